@@ -1,0 +1,1 @@
+//! Statistical tests for samplers, densities and estimators.

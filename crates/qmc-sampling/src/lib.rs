@@ -1,0 +1,1 @@
+//! Point sequences, samplers and warps for Monte Carlo and quasi-Monte Carlo integration.

@@ -1,0 +1,1 @@
+//! Renderer-neutral scene traits, and a reference scene that implements them.

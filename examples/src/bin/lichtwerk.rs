@@ -1,0 +1,2 @@
+//! The lichtwerk program.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Renderers composed from the Lichtwerk crates.
