@@ -1,0 +1,13 @@
+//! The renderer-neutral traits that estimators are written against.
+
+mod emitter;
+mod scene;
+mod sensor;
+mod spectrum;
+mod vertex;
+
+pub use emitter::{ChosenEmitter, DirectSample, EmissionSample, Emitter, EmitterChoice, EmitterId};
+pub use scene::Scene;
+pub use sensor::{Sensor, SensorConnection, SensorRay};
+pub use spectrum::{Rgb, Spectrum};
+pub use vertex::{ScatterSample, TransportMode, Vertex};
