@@ -1,1 +1,21 @@
 //! Point sequences, samplers and warps for Monte Carlo and quasi-Monte Carlo integration.
+#![cfg_attr(not(feature = "std"), no_std)]
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod float;
+mod hash;
+mod real;
+mod sampler;
+mod sequence;
+
+pub mod scramble;
+pub mod sobol;
+pub mod warp;
+
+pub use float::{f32_from_bits, f64_from_bits};
+pub use real::Real;
+pub use sampler::{Independent, IndependentSampler, OwenSobol, OwenSobolSampler, Sampler, SamplerFamily};
+pub use sequence::Sequence;
