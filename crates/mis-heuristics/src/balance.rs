@@ -1,6 +1,6 @@
 //! The balance heuristic.
 
-use crate::math::ratio;
+use crate::math::{ratio, ratio_weight};
 use crate::{Densities, Float, Heuristic};
 
 /// The balance heuristic: weights in proportion to the densities.
@@ -13,7 +13,7 @@ use crate::{Densities, Float, Heuristic};
 ///
 /// **Assumptions.** The laws of [`Heuristic`]; none beyond.
 ///
-/// **Unbiased.** Its variance is at most `(1/n) E^2` above that of the best weights, see `variance_bound`.
+/// **Unbiased.** Its variance is at most `(1/n) E^2` above that of the best weights, see [`variance_bound`](crate::variance_bound).
 ///
 /// **Cost.** Asks for all densities, each once; for one only if the technique's own density is zero. With two
 /// techniques one addition and one division. Sums that overflow are avoided by adding up ratios of densities.
@@ -31,23 +31,17 @@ use crate::{Densities, Float, Heuristic};
 pub struct Balance;
 
 impl<F: Float> Heuristic<F> for Balance {
-    #[inline]
+    #[inline(always)]
     fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+        if densities.len() != 2 {
+            return ratio_weight(technique, densities, |ratio| ratio);
+        }
         let own = densities.density(technique).positive_part();
-        if own == F::ZERO {
+        if own <= F::ZERO {
             return F::ZERO;
         }
-        if densities.len() == 2 {
-            let other = densities.density(1 - technique).positive_part();
-            let sum = own + other;
-            return if sum < F::INFINITY { own / sum } else { F::ONE / (F::ONE + ratio(other, own)) };
-        }
-        let mut sum = F::ONE;
-        for other in 0..densities.len() {
-            if other != technique {
-                sum = sum + ratio(densities.density(other).positive_part(), own);
-            }
-        }
-        F::ONE / sum
+        let other = densities.density(1 - technique).positive_part();
+        let sum = own + other;
+        if sum < F::INFINITY { own / sum } else { F::ONE / (F::ONE + ratio(other, own)) }
     }
 }

@@ -33,6 +33,9 @@ pub trait Float:
     const INFINITY: Self;
     /// Difference between 1 and the next larger number.
     const EPSILON: Self;
+    /// Smallest positive number of full precision.
+    #[doc(hidden)]
+    const SMALLEST: Self;
     /// Sums of squares from here to the largest number lose nothing to underflow that a weight could show:
     /// the smallest normal number over [`EPSILON`](Self::EPSILON) squared.
     #[doc(hidden)]
@@ -57,6 +60,7 @@ impl Float for f32 {
     const ONE: Self = 1.0;
     const INFINITY: Self = f32::INFINITY;
     const EPSILON: Self = f32::EPSILON;
+    const SMALLEST: Self = f32::MIN_POSITIVE;
     const SAFE_SQUARE: Self = f32::MIN_POSITIVE / f32::EPSILON / f32::EPSILON;
 
     #[inline(always)]
@@ -78,6 +82,7 @@ impl Float for f64 {
     const ONE: Self = 1.0;
     const INFINITY: Self = f64::INFINITY;
     const EPSILON: Self = f64::EPSILON;
+    const SMALLEST: Self = f64::MIN_POSITIVE;
     const SAFE_SQUARE: Self = f64::MIN_POSITIVE / f64::EPSILON / f64::EPSILON;
 
     #[inline(always)]

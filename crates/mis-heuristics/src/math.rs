@@ -4,13 +4,34 @@
 //! a `std` feature that changes results) is not worth the three places that need them. The functions here are plain
 //! series in `f64`, tested against `std`; they are not used by any heuristic with a whole exponent.
 
-use crate::Float;
+use crate::{Densities, Float};
 
 /// `other / own` for positive `own`; two infinite densities are equal.
 #[inline(always)]
 pub(crate) fn ratio<F: Float>(other: F, own: F) -> F {
     let quotient = other / own;
     if quotient.partial_cmp(&quotient).is_some() { quotient } else { F::ONE }
+}
+
+/// `1 / sum_j power(d_j / d_i)`: a ratio that overflows stands for a weight of zero, so nothing else can go wrong.
+///
+/// Asks for every density once, for the own one first, and for no other if that is zero.
+#[inline]
+pub(crate) fn ratio_weight<F: Float>(technique: usize, densities: &impl Densities<F>, power: impl Fn(F) -> F) -> F {
+    let own = densities.density(technique).positive_part();
+    if own <= F::ZERO {
+        return F::ZERO;
+    }
+    let others = (0..densities.len()).filter(|&other| other != technique);
+    let reciprocal = F::ONE / own;
+    let sum = if reciprocal >= F::SMALLEST && reciprocal < F::INFINITY {
+        // The usual case: one division for all.
+        others.fold(F::ONE, |sum, other| sum + power(densities.density(other).positive_part() * reciprocal))
+    } else {
+        // The reciprocal is subnormal, zero or infinite.
+        others.fold(F::ONE, |sum, other| sum + power(ratio(densities.density(other).positive_part(), own)))
+    };
+    F::ONE / sum
 }
 
 /// `x^n` for `n >= 1` by repeated squaring.
@@ -63,8 +84,8 @@ fn log2(x: f64) -> f64 {
     let s = (mantissa - 1.0) / (mantissa + 1.0);
     let square = s * s;
     let mut series = 0.0;
-    for k in (0..12).rev() {
-        series = series * square + 1.0 / f64::from(2 * k + 1);
+    for &coefficient in ARTANH.iter().rev() {
+        series = series * square + coefficient;
     }
     f64::from(exponent) + 2.0 * s * series * core::f64::consts::LOG2_E
 }
@@ -80,19 +101,76 @@ fn exp2(x: f64) -> f64 {
     // Split into a whole number and a rest in [-1/2, 1/2], e^rest by its Taylor series.
     let whole = (if x < 0.0 { x - 0.5 } else { x + 0.5 }) as i32;
     let rest = (x - f64::from(whole)) * core::f64::consts::LN_2;
-    let mut series = 1.0;
-    for k in (1..=14).rev() {
-        series = 1.0 + series * rest / f64::from(k);
+    let mut series = 0.0;
+    for &coefficient in EXPONENTIAL.iter().rev() {
+        series = series * rest + coefficient;
     }
     // In two factors, because the power of two alone may be out of range.
     let half = whole / 2;
     series * power_of_two(half) * power_of_two(whole - half)
 }
 
+/// Taylor coefficients of `artanh(s) / s` in `s^2`: the first left out is below `2^-60` for `|s| < 0.172`.
+const ARTANH: [f64; 11] = {
+    let mut coefficients = [0.0; 11];
+    let mut k = 0;
+    while k < 11 {
+        coefficients[k] = 1.0 / (2 * k + 1) as f64;
+        k += 1;
+    }
+    coefficients
+};
+
+/// Taylor coefficients of `e^x`: the first left out is below `2^-57` for `|x| < 0.347`.
+const EXPONENTIAL: [f64; 14] = {
+    let mut coefficients = [1.0; 14];
+    let mut k = 1;
+    while k < 14 {
+        coefficients[k] = coefficients[k - 1] / k as f64;
+        k += 1;
+    }
+    coefficients
+};
+
 /// `2^exponent` for `|exponent| <= 1022`.
 fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
+
+/// Solves `matrix x = vector` for a symmetric positive semidefinite matrix, with the vector in its range.
+///
+/// Gauss-Jordan elimination, pivots chosen on the diagonal relative to its original entries, so that the scales of
+/// the unknowns do not matter; unknowns that depend linearly on others are set to zero.
+pub(crate) fn solve_semidefinite<const N: usize>(mut matrix: [[f64; N]; N], mut vector: [f64; N]) -> [f64; N] {
+    let diagonal: [f64; N] = core::array::from_fn(|i| matrix[i][i]);
+    let mut eliminated = [false; N];
+    for _ in 0..N {
+        // The pivot that has kept most of its original value.
+        let mut pivot = None;
+        let mut kept = SINGULAR;
+        for i in 0..N {
+            if !eliminated[i] && diagonal[i] > 0.0 && matrix[i][i] / diagonal[i] > kept {
+                kept = matrix[i][i] / diagonal[i];
+                pivot = Some(i);
+            }
+        }
+        let Some(pivot) = pivot else { break };
+        eliminated[pivot] = true;
+        for row in 0..N {
+            if row != pivot {
+                let factor = matrix[row][pivot] / matrix[pivot][pivot];
+                for column in 0..N {
+                    matrix[row][column] -= factor * matrix[pivot][column];
+                }
+                vector[row] -= factor * vector[pivot];
+            }
+        }
+    }
+    core::array::from_fn(|i| if eliminated[i] { vector[i] / matrix[i][i] } else { 0.0 })
+}
+
+/// A pivot that has lost all but this fraction of its value is rounding error.
+const SINGULAR: f64 = 1e-12;
 
 #[cfg(test)]
 mod tests {
@@ -139,5 +217,21 @@ mod tests {
         for n in 1..=16 {
             assert_eq!(powi(3.0_f64, n), 3.0_f64.powi(n as i32));
         }
+    }
+
+    #[test]
+    fn linear_systems() {
+        // Well conditioned, with scales far apart: A = S B S, x = S^-1 y.
+        let (b, y, scale) = ([[4.0, 1.0, 0.5], [1.0, 3.0, 1.0], [0.5, 1.0, 2.0]], [1.0, -2.0, 3.0], [1e-20, 1.0, 1e15]);
+        let a = core::array::from_fn(|i| core::array::from_fn(|k| scale[i] * b[i][k] * scale[k]));
+        let right = core::array::from_fn(|i| (0..3).map(|k| scale[i] * b[i][k] * y[k]).sum());
+        let x: [f64; 3] = solve_semidefinite(a, right);
+        for i in 0..3 {
+            assert!((x[i] * scale[i] - y[i]).abs() < 1e-12);
+        }
+        // Singular: two equal unknowns, and one that does not occur.
+        let x = solve_semidefinite([[2.0, 2.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 0.0]], [6.0, 6.0, 0.0]);
+        assert_eq!((x[0] + x[1], x[2]), (3.0, 0.0));
+        assert_eq!(solve_semidefinite([[0.0]], [0.0]), [0.0]);
     }
 }

@@ -33,7 +33,7 @@ impl<F: Float> Heuristic<F> for Maximum {
     #[inline]
     fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
         let own = densities.density(technique).positive_part();
-        if own == F::ZERO {
+        if own <= F::ZERO {
             return F::ZERO;
         }
         for other in 0..densities.len() {
