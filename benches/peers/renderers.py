@@ -65,7 +65,7 @@ class Mitsuba:
 class Lichtwerk:
     """The `lichtwerk` program, one process per image."""
 
-    def __init__(self, program, threads, scratch=None, heuristic=None):
+    def __init__(self, program, threads, scratch=None):
         self.name = "lichtwerk"
         self.program = str(Path(program).resolve())
         if not os.access(self.program, os.X_OK):
