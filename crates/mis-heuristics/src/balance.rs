@@ -13,7 +13,8 @@ use crate::{Densities, Float, Heuristic};
 ///
 /// **Assumptions.** The laws of [`Heuristic`]; none beyond.
 ///
-/// **Unbiased.** Its variance is at most `(1/n) E^2` above that of the best weights, see [`variance_bound`](crate::variance_bound).
+/// **Unbiased.** Its variance is at most `(1/n) E^2` above that of the best weights, see
+/// [`variance_bound`](crate::variance_bound).
 ///
 /// **Cost.** Asks for all densities, each once; for one only if the technique's own density is zero. With two
 /// techniques one addition and one division. Sums that overflow are avoided by adding up ratios of densities.

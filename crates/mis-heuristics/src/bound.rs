@@ -35,14 +35,18 @@ impl Bounded {
 /// sigma^2(eta) <= c sigma^2(eta_opt) + 1/n E(eta)^2
 /// ```
 ///
-/// **Symbols.** `sigma^2(eta_opt)`: variance of the estimator with any other **non-negative** weights, the best included; `E`: the integral;
-/// `n`: samples of each technique; `l`: number of techniques; `c`: [`Bounded::factor`]. The print has `E` where only `E^2` has the right dimension.
+/// **Symbols.** `sigma^2(eta_opt)`: variance of the estimator with any other **non-negative** weights, the best
+/// included; `E`: the integral;
+/// `n`: samples of each technique; `l`: number of techniques; `c`: [`Bounded::factor`]. The print has `E` where only
+/// `E^2` has the right dimension.
 ///
-/// **Assumptions.** All techniques take `n` samples. Weights that may be negative ([`OptimalWeights`](crate::OptimalWeights)) can do better than the bound allows.
+/// **Assumptions.** All techniques take `n` samples. Weights that may be negative
+/// ([`OptimalWeights`](crate::OptimalWeights)) can do better than the bound allows.
 ///
 /// **Cost.** None to speak of.
 ///
-/// **Source.** P0, equation 5; E. Veach, PhD thesis 1997, theorems 9.2 and 9.3, from which the factors of the cutoff and maximum heuristics are.
+/// **Source.** P0, equation 5; E. Veach, PhD thesis 1997, theorems 9.2 and 9.3, from which the factors of the cutoff
+/// and maximum heuristics are.
 ///
 /// # Example
 /// ```
@@ -60,7 +64,8 @@ pub fn variance_bound(heuristic: Bounded, techniques: usize, optimal_variance: f
 /// sigma^2(eta) <= c sigma^2(eta_opt) + (1 / min_i n_i - 1 / sum_i n_i) E(eta)^2
 /// ```
 ///
-/// **Source.** E. Veach, PhD thesis 1997, theorems 9.2 and 9.3. A count of zero (or none at all) bounds nothing: infinity.
+/// **Source.** E. Veach, PhD thesis 1997, theorems 9.2 and 9.3. A count of zero (or none at all) bounds nothing:
+/// infinity.
 ///
 /// # Example
 /// ```

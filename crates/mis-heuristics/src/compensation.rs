@@ -50,19 +50,25 @@ impl core::error::Error for CompensationError {}
 /// q'_i = max(0, q_i - a u_i) / sum_j max(0, q_j - a u_j)
 /// ```
 ///
-/// **Symbols.** `q_i`: the probability of cell `i` if the table alone were to follow the integrand; `u_i`: the probability of that cell under the
-/// other techniques together; both are normalised here. `a`: amount. If the table takes the fraction `c` of all samples, the
-/// mixture `c q' + (1-c) u` follows the integrand best for `a = 1 - c`. For an environment map, of which a surface sees one half,
+/// **Symbols.** `q_i`: the probability of cell `i` if the table alone were to follow the integrand; `u_i`: the
+/// probability of that cell under the
+/// other techniques together; both are normalised here. `a`: amount. If the table takes the fraction `c` of all
+/// samples, the
+/// mixture `c q' + (1-c) u` follows the integrand best for `a = 1 - c`. For an environment map, of which a surface
+/// sees one half,
 /// `u` is the solid angle of the cells and `a = 2 (1 - c)`: the mean is subtracted for `c = 1/2`.
 ///
-/// **Assumptions.** For combination with the **balance heuristic** (the power heuristic over-compensates). Masses are probabilities per cell, that is
+/// **Assumptions.** For combination with the **balance heuristic** (the power heuristic over-compensates). Masses are
+/// probabilities per cell, that is
 /// density times measure of the cell (luminance times solid angle).
 ///
-/// **Unbiased** as long as the other techniques really reach the cells that become zero: a cell of positive mass becomes zero only where `u_i > 0`.
+/// **Unbiased** as long as the other techniques really reach the cells that become zero: a cell of positive mass
+/// becomes zero only where `u_i > 0`.
 ///
 /// **Cost.** Three passes over the table, once.
 ///
-/// **Source.** O. Karlík, M. Šik, P. Vévoda, T. Skřivan, J. Křivánek, "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance
+/// **Source.** O. Karlík, M. Šik, P. Vévoda, T. Skřivan, J. Křivánek, "MIS Compensation: Optimizing Sampling
+/// Techniques in Multiple Importance
 /// Sampling", 2019.
 ///
 /// # Errors

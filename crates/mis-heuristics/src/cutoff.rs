@@ -16,7 +16,8 @@ use crate::{Balance, Densities, Float, Heuristic};
 ///
 /// **Unbiased.**
 ///
-/// **Cost.** Asks for all densities once where the weight is positive, and stops at the first one that cuts the technique
+/// **Cost.** Asks for all densities once where the weight is positive, and stops at the first one that cuts the
+/// technique
 /// off. Beyond 32 techniques the densities of the others are asked for a second time.
 ///
 /// **Source.** E. Veach and L. Guibas 1995, section 4.
@@ -82,12 +83,10 @@ impl<F: Float> Heuristic<F> for Cutoff {
         }
 
         // Find the largest density; give up as soon as the technique is cut off.
+        let others = || (0..densities.len()).filter(|&other| other != technique);
         let mut remembered = [F::ZERO; REMEMBERED];
         let mut largest = own;
-        for other in 0..densities.len() {
-            if other == technique {
-                continue;
-            }
+        for other in others() {
             let density = densities.density(other).positive_part();
             if own < alpha * density {
                 return F::ZERO;
@@ -102,10 +101,7 @@ impl<F: Float> Heuristic<F> for Cutoff {
 
         // Balance among those that are left.
         let mut sum = F::ONE;
-        for other in 0..densities.len() {
-            if other == technique {
-                continue;
-            }
+        for other in others() {
             let density = if other < REMEMBERED { remembered[other] } else { densities.density(other).positive_part() };
             if density >= alpha * largest {
                 sum = sum + ratio(density, own);

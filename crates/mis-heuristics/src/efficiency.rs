@@ -6,7 +6,8 @@
 /// mean = 1/n sum x_i,    variance = 1/(n-1) sum (x_i - mean)^2
 /// ```
 ///
-/// **Assumptions.** The values are independent and of equal distribution. A value that is infinite or NaN makes the results NaN.
+/// **Assumptions.** The values are independent and of equal distribution. A value that is infinite or NaN makes the
+/// results NaN.
 ///
 /// **Unbiased**, both.
 ///
@@ -102,10 +103,12 @@ impl FromIterator<f64> for RunningVariance {
 /// efficiency = 1 / (sigma^2(eta) T(eta))
 /// ```
 ///
-/// **Symbols.** `sigma^2`: variance of one realisation of the estimator `eta`; `T`: its mean cost, in seconds, rays, densities asked for: whatever is
+/// **Symbols.** `sigma^2`: variance of one realisation of the estimator `eta`; `T`: its mean cost, in seconds, rays,
+/// densities asked for: whatever is
 /// added, the same for all that are compared.
 ///
-/// **Assumptions.** Realisations are independent. Taking the mean of `n` of them divides the variance and multiplies the cost, so the efficiency
+/// **Assumptions.** Realisations are independent. Taking the mean of `n` of them divides the variance and multiplies
+/// the cost, so the efficiency
 /// does not depend on `n`; at equal variance, the ratio of two efficiencies is the ratio of the costs.
 ///
 /// **Consistent** (the reciprocal of an unbiased variance is not unbiased).
@@ -165,7 +168,8 @@ impl Efficiency {
         Some(1.0 / (self.values.variance()? * self.costs.mean()?))
     }
 
-    /// How many times more efficient than `other`; `None` if either has fewer than two realisations or both are infinite.
+    /// How many times more efficient than `other`; `None` if either has fewer than two realisations or both are
+    /// infinite.
     pub fn relative_to(&self, other: &Self) -> Option<f64> {
         let ratio = self.efficiency()? / other.efficiency()?;
         (!ratio.is_nan()).then_some(ratio)

@@ -16,8 +16,10 @@ use crate::{Densities, Float};
 /// 2. a technique of density zero has weight zero;
 /// 3. weights are finite. (They need not be in `[0, 1]`, although those of this crate's heuristics are.)
 ///
-/// The heuristics of this crate moreover return zero if all densities are zero, and keep the laws for infinite densities,
-/// see [`Densities`]. The `check_heuristic` function of the `estimator-checks` crate tests the laws on anyone's heuristic.
+/// The heuristics of this crate moreover return zero if all densities are zero, and keep the laws for infinite
+/// densities,
+/// see [`Densities`]. The `check_heuristic` function of the `estimator-checks` crate tests the laws on anyone's
+/// heuristic.
 ///
 /// # Source
 /// E. Veach and L. Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995, section 3;
@@ -60,7 +62,8 @@ pub trait HeuristicExt<F: Float>: Heuristic<F> {
     /// `w_i / (n_i p_i)`: what the integrand is multiplied by, zero where the density is zero.
     ///
     /// The technique's density is asked for once more than the weight asks. For an infinite density (a Dirac delta,
-    /// whose integrand carries the same delta) the quotient has no meaning: use [`Heuristic::weight`] and cancel the delta.
+    /// whose integrand carries the same delta) the quotient has no meaning: use [`Heuristic::weight`] and cancel the
+    /// delta.
     ///
     /// ```
     /// use mis_heuristics::{Balance, HeuristicExt};

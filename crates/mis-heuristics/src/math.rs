@@ -156,11 +156,12 @@ pub(crate) fn solve_semidefinite<const N: usize>(mut matrix: [[f64; N]; N], mut 
         }
         let Some(pivot) = pivot else { break };
         eliminated[pivot] = true;
+        let pivot_row = matrix[pivot];
         for row in 0..N {
             if row != pivot {
-                let factor = matrix[row][pivot] / matrix[pivot][pivot];
-                for column in 0..N {
-                    matrix[row][column] -= factor * matrix[pivot][column];
+                let factor = matrix[row][pivot] / pivot_row[pivot];
+                for (entry, pivot_entry) in matrix[row].iter_mut().zip(pivot_row) {
+                    *entry -= factor * pivot_entry;
                 }
                 vector[row] -= factor * vector[pivot];
             }

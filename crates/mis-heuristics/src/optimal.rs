@@ -16,7 +16,8 @@ pub enum OptimalError {
     },
     /// The value of the integrand is infinite or NaN.
     Value(f64),
-    /// The densities of a sample sum to this, which is not a positive, finite number: the sample cannot have been generated.
+    /// The densities of a sample sum to this, which is not a positive, finite number: the sample cannot have been
+    /// generated.
     DensitySum(f64),
     /// The number of densities differs from the number of techniques.
     Techniques {
@@ -41,7 +42,8 @@ impl core::fmt::Display for OptimalError {
 
 impl core::error::Error for OptimalError {}
 
-/// The moments from which the optimal weights of `N` techniques are found: the technique matrix and the contribution vector.
+/// The moments from which the optimal weights of `N` techniques are found: the technique matrix and the contribution
+/// vector.
 ///
 /// ```text
 /// A_ik = E sum over all samples of  d_i d_k / D^2
@@ -49,15 +51,19 @@ impl core::error::Error for OptimalError {}
 /// A beta = b
 /// ```
 ///
-/// **Symbols.** `d_j = n_j p_j`: densities of a sample, as everywhere in this crate; `f`: the integrand. The publication writes the same with
-/// `p_j` in place of `d_j` and `alpha_j = n_j beta_j`. The expectations are estimated by the samples of all iterations so far.
+/// **Symbols.** `d_j = n_j p_j`: densities of a sample, as everywhere in this crate; `f`: the integrand. The
+/// publication writes the same with
+/// `p_j` in place of `d_j` and `alpha_j = n_j beta_j`. The expectations are estimated by the samples of all
+/// iterations so far.
 ///
-/// **Assumptions.** Technique `i` takes exactly `n_i` samples per iteration, and **every** sample is added, above all those where `f` is zero.
+/// **Assumptions.** Technique `i` takes exactly `n_i` samples per iteration, and **every** sample is added, above all
+/// those where `f` is zero.
 /// For colours, weight every channel on its own or by luminance: the weights stay unbiased for any `f`.
 ///
 /// **Cost.** `N^2 + N` multiply-adds per sample, `N^3` operations per solution; no allocation. All in `f64`.
 ///
-/// **Source.** I. Kondapaneni, P. Vévoda, P. Grittmann, T. Skřivan, P. Slusallek, J. Křivánek, "Optimal Multiple Importance Sampling", 2019.
+/// **Source.** I. Kondapaneni, P. Vévoda, P. Grittmann, T. Skřivan, P. Slusallek, J. Křivánek, "Optimal Multiple
+/// Importance Sampling", 2019.
 ///
 /// # Example
 /// ```
@@ -129,7 +135,8 @@ impl<const N: usize> OptimalMoments<N> {
 
     /// The weights that are optimal for the moments. Before the first sample: those of the balance heuristic.
     ///
-    /// Techniques that depend linearly on others (equal ones, or more techniques than samples) get a coefficient of zero, which
+    /// Techniques that depend linearly on others (equal ones, or more techniques than samples) get a coefficient of
+    /// zero, which
     /// changes nothing: any solution is as good.
     pub fn solve(&self) -> OptimalWeights<N> {
         OptimalWeights { counts: self.counts, beta: solve_semidefinite(self.matrix, self.vector) }
@@ -143,12 +150,16 @@ impl<const N: usize> OptimalMoments<N> {
 /// estimate = sum_k n_k beta_k + sum over all samples of (f - sum_k beta_k d_k) / D,      D = sum_j d_j
 /// ```
 ///
-/// **Symbols.** As for [`OptimalMoments`]. The second line is the same estimator without the division by `f`, and a control variate: use it.
+/// **Symbols.** As for [`OptimalMoments`]. The second line is the same estimator without the division by `f`, and a
+/// control variate: use it.
 ///
-/// **Assumptions.** The coefficients do not depend on the samples they weight, otherwise the estimate is only consistent: solve from
-/// earlier iterations ([`ProgressiveOptimal`](crate::ProgressiveOptimal)). The sum runs over all samples, also those where `f` is zero.
+/// **Assumptions.** The coefficients do not depend on the samples they weight, otherwise the estimate is only
+/// consistent: solve from
+/// earlier iterations ([`ProgressiveOptimal`](crate::ProgressiveOptimal)). The sum runs over all samples, also those
+/// where `f` is zero.
 ///
-/// **Unbiased** for any coefficients; of least variance for the true moments. Negative weights can beat the bounds that hold for
+/// **Unbiased** for any coefficients; of least variance for the true moments. Negative weights can beat the bounds
+/// that hold for
 /// non-negative ones.
 ///
 /// **Cost.** Asks for all densities, each once; `2 N` multiply-adds and `N` divisions.
@@ -203,8 +214,10 @@ impl<const N: usize> OptimalWeights<N> {
 
     /// The weights as a heuristic, at a sample where the integrand is `f`.
     ///
-    /// For comparison with other heuristics: the weights have no limit where `f` goes to zero ([`contribution`](Self::contribution) has).
-    /// Where a weight would exceed a thousand times that of the balance heuristic (`f` next to zero), all are those of the balance heuristic;
+    /// For comparison with other heuristics: the weights have no limit where `f` goes to zero
+    /// ([`contribution`](Self::contribution) has).
+    /// Where a weight would exceed a thousand times that of the balance heuristic (`f` next to zero), all are those
+    /// of the balance heuristic;
     /// also where `f` is infinite or NaN, or a density is infinite. The laws hold all the same.
     pub fn at(&self, f: f64) -> OptimalAt<'_, N> {
         OptimalAt { weights: self, f }

@@ -31,18 +31,23 @@ impl core::error::Error for PartitionError {}
 /// soft:  s(G) = min(1, b / G)               (a point light takes min(G, b), the scattered ray max(0, G - b))
 /// ```
 ///
-/// **Symbols.** `G`: geometry term between two path vertices, in 1/length^2; `t`, `b`: the threshold, in the same unit, hence
-/// dependent on the unit of the scene; `s`: the share of the connection, for [`Stratification`](crate::Stratification) or [`Remainder`](crate::Remainder).
+/// **Symbols.** `G`: geometry term between two path vertices, in 1/length^2; `t`, `b`: the threshold, in the same
+/// unit, hence
+/// dependent on the unit of the scene; `s`: the share of the connection, for
+/// [`Stratification`](crate::Stratification) or [`Remainder`](crate::Remainder).
 ///
 /// **Assumptions.** `G >= 0`. An infinite `G` (coincident points) and NaN always go to the scattered ray.
 ///
-/// **Unbiased** as the stratification heuristic. `t = 0` is path tracing, `t = inf` instant radiosity. The soft partition
-/// has no jump where `G = b`, and its point lights contribute a bounded but never vanishing amount; in exchange it traces
+/// **Unbiased** as the stratification heuristic. `t = 0` is path tracing, `t = inf` instant radiosity. The soft
+/// partition
+/// has no jump where `G = b`, and its point lights contribute a bounded but never vanishing amount; in exchange it
+/// traces
 /// shadow rays to all point lights, and all scattered rays with `G > b` carry a part of the light.
 ///
 /// **Cost.** One comparison; one division more for the soft partition where `G > b`.
 ///
-/// **Source.** P0, equations 2 and 3; soft: T. Kollig and A. Keller, "Illumination in the Presence of Weak Singularities", 2006.
+/// **Source.** P0, equations 2 and 3; soft: T. Kollig and A. Keller, "Illumination in the Presence of Weak
+/// Singularities", 2006.
 ///
 /// # Example
 /// ```
@@ -136,7 +141,8 @@ impl<F: Float> GeometryPartition<F> {
 
     /// How far a scattered ray can be needed, given its cosine at the surface it leaves: `sqrt(cos / t)`.
     ///
-    /// Beyond, `G < t`, since the cosine at the other end is at most one; the bound holds up to rounding. Infinite for `t = 0`;
+    /// Beyond, `G < t`, since the cosine at the other end is at most one; the bound holds up to rounding. Infinite
+    /// for `t = 0`;
     /// zero for a cosine that is negative or NaN.
     #[inline]
     pub fn reach(&self, cos_theta: F) -> F {

@@ -15,7 +15,8 @@ use crate::{Balance, Densities, Float, Heuristic, Maximum};
 ///
 /// **Assumptions.** The laws of [`Heuristic`]; none beyond.
 ///
-/// **Unbiased.** For beta = 2 the variance is bounded by P0's equation 5, see [`variance_bound`](crate::variance_bound).
+/// **Unbiased.** For beta = 2 the variance is bounded by P0's equation 5, see
+/// [`variance_bound`](crate::variance_bound).
 /// Larger beta favour the technique of largest density, which pays where one technique fits the integrand well.
 ///
 /// **Cost.** Asks for all densities, each once; for one only if the technique's own density is zero (the maximum
@@ -24,7 +25,8 @@ use crate::{Balance, Densities, Float, Heuristic, Maximum};
 /// (40 ns where `std` needs 15), because `core` has no power function and this crate no dependency that has one.
 ///
 /// **Range.** Powers of densities overflow `f32` from `1.8e19` on. Outside the safe range, and always for more than two
-/// techniques, the equivalent `w_i = 1 / sum_j (d_j / d_i)^beta` is used: a ratio that overflows stands for a weight of zero.
+/// techniques, the equivalent `w_i = 1 / sum_j (d_j / d_i)^beta` is used: a ratio that overflows stands for a weight
+/// of zero.
 ///
 /// **Source.** E. Veach and L. Guibas 1995, section 4; P0, section 3.1.
 ///

@@ -2,7 +2,8 @@
 
 use crate::{Densities, Float, OptimalError, OptimalMoments, OptimalWeights, RunningVariance};
 
-/// Optimal weights, learnt while the estimate is made: each iteration is weighted by what the iterations before it have shown.
+/// Optimal weights, learnt while the estimate is made: each iteration is weighted by what the iterations before it
+/// have shown.
 ///
 /// ```text
 /// estimate of iteration t = sum_k n_k beta_k + sum over its samples of (f - sum_k beta_k d_k) / D
@@ -11,7 +12,8 @@ use crate::{Densities, Float, OptimalError, OptimalMoments, OptimalWeights, Runn
 ///
 /// **Symbols.** As for [`OptimalMoments`] and [`OptimalWeights`].
 ///
-/// **Assumptions.** Iterations are independent; in each of them technique `i` takes exactly `n_i` samples, and all are added.
+/// **Assumptions.** Iterations are independent; in each of them technique `i` takes exactly `n_i` samples, and all
+/// are added.
 ///
 /// **Unbiased**, since the coefficients of an iteration do not depend on its samples.
 ///
@@ -46,9 +48,11 @@ pub struct ProgressiveOptimal<const N: usize> {
 }
 
 impl<const N: usize> ProgressiveOptimal<N> {
-    /// `counts` samples per technique and iteration; the first `training` iterations (at least one) use the balance heuristic.
+    /// `counts` samples per technique and iteration; the first `training` iterations (at least one) use the balance
+    /// heuristic.
     ///
-    /// Coefficients learnt from few samples can be worse than none: a handful of training iterations pays for noisy integrands.
+    /// Coefficients learnt from few samples can be worse than none: a handful of training iterations pays for noisy
+    /// integrands.
     ///
     /// # Errors
     /// [`OptimalError::NoTechnique`] if `N` is zero, [`OptimalError::NoSamples`] if a count is zero.

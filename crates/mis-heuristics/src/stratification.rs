@@ -4,7 +4,8 @@ use crate::{Densities, Float, Heuristic};
 
 /// What the predicate of a [`Stratification`] says about one technique.
 ///
-/// Implemented for `bool` (the whole remaining weight, or none of it), for `f32` and `f64` (a fraction of it, in `[0, 1]`;
+/// Implemented for `bool` (the whole remaining weight, or none of it), for `f32` and `f64` (a fraction of it, in `[0,
+/// 1]`;
 /// NaN counts as zero), and for `Option` of these, where `None` says that the technique **cannot generate** the sample.
 pub trait Verdict<F> {
     /// The fraction of the remaining weight, or `None` if the technique cannot generate the sample.
@@ -33,16 +34,20 @@ impl<F, V: Verdict<F>> Verdict<F> for Option<V> {
     }
 }
 
-/// The stratification heuristic: techniques are tried in order, and a predicate, not a density, says who takes the sample.
+/// The stratification heuristic: techniques are tried in order, and a predicate, not a density, says who takes the
+/// sample.
 ///
 /// ```text
 /// w_k = s_k prod_(j<k) (1 - s_j)    for k < l-1,
 /// w_(l-1) =  prod_(j<l-1) (1 - s_j)
 /// ```
 ///
-/// **Symbols.** `l`: number of techniques; `s_k` in `[0, 1]`: the share that technique `k` takes of what the techniques before it
-/// left, zero or one for a hard stratification. Any function of the sample will do: P0 takes `s_k = 1` where the geometry
-/// term between the path vertices `x_k` and `x_(k+1)` is below a threshold (see [`GeometryPartition`](crate::GeometryPartition)).
+/// **Symbols.** `l`: number of techniques; `s_k` in `[0, 1]`: the share that technique `k` takes of what the
+/// techniques before it
+/// left, zero or one for a hard stratification. Any function of the sample will do: P0 takes `s_k = 1` where the
+/// geometry
+/// term between the path vertices `x_k` and `x_(k+1)` is below a threshold (see
+/// [`GeometryPartition`](crate::GeometryPartition)).
 /// The last technique takes the rest: P0's print leaves its weight out, and without it the sum is not one.
 ///
 /// **Assumptions.** The predicate depends on the sample alone, not on the technique that generated it. A technique that
@@ -52,7 +57,8 @@ impl<F, V: Verdict<F>> Verdict<F> for Option<V> {
 /// sample (a path tracer that would have to hit a point light), say so by [`without_last`](Self::without_last); then
 /// the last possible technique takes the rest. If all are impossible, all weights are zero.
 ///
-/// **Unbiased.** The weights sum to one by construction. It may have more variance than the balance heuristic, and still be the more
+/// **Unbiased.** The weights sum to one by construction. It may have more variance than the balance heuristic, and
+/// still be the more
 /// efficient: no technique has to be evaluated, or even sampled, for the weight of another.
 ///
 /// **Cost.** Asks for **no density**; the predicate at most once for each technique up to the one in question
@@ -154,8 +160,10 @@ impl<F: Float, V: Verdict<F>, P: Fn(usize) -> V> Heuristic<F> for Stratification
 /// left_1 = 1,    left_(k+1) = left_k (1 - s_k)
 /// ```
 ///
-/// **Symbols.** `s_k`: share of the connection at vertex `x_k`, as in [`Stratification`]. A connection to a light path vertex
-/// `y` weighs `taken(s(x_k, y))`; scattering to `x_(k+1)` leaves `after(s(x_k, x_(k+1)))`, and the path ends when nothing is left.
+/// **Symbols.** `s_k`: share of the connection at vertex `x_k`, as in [`Stratification`]. A connection to a light
+/// path vertex
+/// `y` weighs `taken(s(x_k, y))`; scattering to `x_(k+1)` leaves `after(s(x_k, x_(k+1)))`, and the path ends when
+/// nothing is left.
 ///
 /// **Cost.** One multiplication.
 ///
