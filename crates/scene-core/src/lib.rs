@@ -1,5 +1,6 @@
 //! Renderer-neutral scene traits, and a reference scene that implements them.
 
+pub mod film;
 mod frame;
 pub mod ray;
 pub mod traits;
