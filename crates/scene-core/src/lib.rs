@@ -3,6 +3,7 @@
 #[cfg(feature = "reference")]
 pub mod builtin;
 mod counting;
+pub mod film;
 mod frame;
 #[cfg(feature = "reference")]
 pub mod material;
