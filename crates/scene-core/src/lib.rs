@@ -1,7 +1,11 @@
 //! Renderer-neutral scene traits, and a reference scene that implements them.
 
 mod frame;
+#[cfg(feature = "reference")]
+pub mod material;
 pub mod ray;
+#[cfg(feature = "reference")]
+pub mod texture;
 pub mod traits;
 
 pub use frame::Frame;
