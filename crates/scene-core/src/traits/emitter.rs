@@ -70,11 +70,7 @@ pub trait Emitter {
     /// ray in that direction meets the emitter `at` this point (`None`: at infinity). Zero for Dirac emitters.
     fn pdf_direct(&self, from: Vec3A, wi: Vec3A, at: Option<&SurfacePoint>) -> f32;
     /// A ray of light, from two numbers for the position and two for the direction.
-    fn sample_emission(
-        &self,
-        u_position: [f32; 2],
-        u_direction: [f32; 2],
-    ) -> Option<EmissionSample<Self::Spectrum>>;
+    fn sample_emission(&self, u_position: [f32; 2], u_direction: [f32; 2]) -> Option<EmissionSample<Self::Spectrum>>;
     /// Densities of [`sample_emission`](Self::sample_emission), by area of the point and by solid angle of the
     /// direction. For emitters at infinity (`at` is `None`) the area is that of the disk outside the scene.
     fn pdf_emission(&self, at: Option<&SurfacePoint>, direction: Vec3A) -> (f32, f32);
