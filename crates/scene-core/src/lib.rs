@@ -7,6 +7,8 @@ pub mod film;
 mod frame;
 #[cfg(feature = "reference")]
 pub mod material;
+#[cfg(feature = "mitsuba")]
+pub mod mitsuba;
 mod ray;
 #[cfg(feature = "reference")]
 pub mod reference;
