@@ -1,5 +1,5 @@
 //! Independent uniform numbers.
-use super::{Sampler, SamplerFamily};
+use super::{Sampler, SamplerFamily, Split};
 use crate::float::f32_from_bits;
 use crate::hash::combine;
 
@@ -87,6 +87,13 @@ impl Sampler for IndependentSampler {
     #[inline]
     fn fork(&self, domain: u32) -> Self {
         Self::from_key(combine(self.increment, u64::from(domain)))
+    }
+}
+
+impl Split for IndependentSampler {
+    #[inline]
+    fn split(&self, domain: u32, _children: u32, child: u32) -> Self {
+        Self::from_key(combine(combine(self.increment, u64::from(domain)), u64::from(child)))
     }
 }
 

@@ -1,5 +1,5 @@
 //! Padded, hashed Owen-scrambled Sobol points.
-use super::{Sampler, SamplerFamily};
+use super::{Sampler, SamplerFamily, Split};
 use crate::float::f32_from_bits;
 use crate::hash::{combine, mix64};
 use crate::scramble::laine_karras;
@@ -12,7 +12,7 @@ use crate::sobol::reversed_4d;
 ///
 /// - Each group of four dimensions of one stream is a scrambled (t,4)-sequence over the index: use powers of two for the
 ///   number of paths. Different groups and different streams are independent of each other.
-/// - Any single mean is unbiased over the seed; its variance is never much above that of [`Independent`], and falls as
+/// - Any single mean is unbiased over the seed; its variance is never much above that of [`Independent`](crate::Independent), and falls as
 ///   about `n^-3` for smooth integrands of at most four dimensions.
 /// - [`next_2d`](Sampler::next_2d) takes an aligned pair of a group, leaving out one dimension where it has to.
 /// - Indices of 2^32 and more start a sequence of their own.
@@ -50,11 +50,7 @@ impl SamplerFamily for OwenSobol {
 
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> OwenSobolSampler {
-        let mut pattern = combine(combine(0, self.seed), stream);
-        if index >> 32 != 0 {
-            pattern = combine(pattern, index >> 32);
-        }
-        OwenSobolSampler::new(pattern, (index as u32).reverse_bits())
+        OwenSobolSampler::at(combine(combine(0, self.seed), stream), index)
     }
 }
 
@@ -75,6 +71,13 @@ impl OwenSobolSampler {
     #[inline]
     const fn new(pattern: u64, index_reversed: u32) -> Self {
         Self { pattern, index_reversed, dimension: 0, group: [0.0; 4] }
+    }
+
+    /// Point `index` of a pattern; its high bits go into the pattern.
+    #[inline]
+    const fn at(pattern: u64, index: u64) -> Self {
+        let high = index >> 32;
+        Self::new(if high == 0 { pattern } else { combine(pattern, high) }, (index as u32).reverse_bits())
     }
 
     /// The next four numbers, stratified together. Leaves out what remains of a group begun.
@@ -144,6 +147,14 @@ impl Sampler for OwenSobolSampler {
     #[inline]
     fn fork(&self, domain: u32) -> Self {
         Self::new(combine(self.pattern, u64::from(domain)), self.index_reversed)
+    }
+}
+
+impl Split for OwenSobolSampler {
+    #[inline]
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let index = u64::from(self.index_reversed.reverse_bits()) * u64::from(children) + u64::from(child);
+        Self::at(combine(combine(self.pattern, u64::from(domain)), u64::from(children)), index)
     }
 }
 
