@@ -9,10 +9,16 @@ extern crate alloc;
 
 mod float;
 mod hash;
+mod interleaved;
 mod real;
+mod replications;
+#[cfg(feature = "rand")]
+mod rng;
 mod sequence;
 
 pub mod image;
+#[cfg(feature = "alloc")]
+pub mod measure;
 pub mod sampler;
 pub mod scramble;
 pub mod sequences;
@@ -20,6 +26,10 @@ pub mod sobol;
 pub mod warp;
 
 pub use float::{f32_from_bits, f64_from_bits};
+pub use interleaved::Interleaved;
 pub use real::Real;
+pub use replications::{Replications, StoppingRule};
+#[cfg(feature = "rand")]
+pub use rng::{RngSampler, SamplerRng};
 pub use sampler::{Independent, IndependentSampler, OwenSobol, OwenSobolSampler, Sampler, SamplerFamily, Split};
 pub use sequence::Sequence;

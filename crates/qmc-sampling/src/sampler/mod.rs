@@ -4,6 +4,8 @@ mod global_halton;
 mod global_sobol;
 mod independent;
 mod lattice;
+#[cfg(feature = "openqmc")]
+mod open_qmc;
 mod owen_sobol;
 mod z_sobol;
 
@@ -12,6 +14,8 @@ pub use global_halton::{GlobalHalton, GlobalHaltonSampler};
 pub use global_sobol::{GlobalSobol, GlobalSobolSampler};
 pub use independent::{Independent, IndependentSampler};
 pub use lattice::{PaddedLattice, PaddedLatticeSampler};
+#[cfg(feature = "openqmc")]
+pub use open_qmc::{OpenQmc, OpenQmcSampler};
 pub use owen_sobol::{OwenSobol, OwenSobolSampler};
 pub use z_sobol::{ZSobol, ZSobolSampler};
 

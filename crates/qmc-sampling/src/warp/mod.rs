@@ -12,7 +12,11 @@ mod cone;
 mod disk;
 mod gaussian;
 mod hemisphere;
+mod normal;
+mod power_cosine;
 mod sphere;
+mod spherical_rectangle;
+mod spherical_triangle;
 mod tent;
 mod triangle;
 
@@ -20,6 +24,8 @@ mod triangle;
 mod alias;
 #[cfg(feature = "alloc")]
 mod error;
+#[cfg(feature = "alloc")]
+mod mis_compensation;
 #[cfg(feature = "alloc")]
 mod piecewise_1d;
 #[cfg(feature = "alloc")]
@@ -37,10 +43,16 @@ pub use hemisphere::{
     sample_cosine_hemisphere, sample_uniform_hemisphere,
 };
 #[cfg(feature = "alloc")]
+pub use mis_compensation::mis_compensated;
+pub use normal::{invert_normal, pdf_normal, sample_normal};
+#[cfg(feature = "alloc")]
 pub use piecewise_1d::PiecewiseConstant1d;
 #[cfg(feature = "alloc")]
 pub use piecewise_2d::PiecewiseConstant2d;
+pub use power_cosine::{invert_power_cosine_hemisphere, pdf_power_cosine_hemisphere, sample_power_cosine_hemisphere};
 pub use sphere::{invert_uniform_sphere, pdf_uniform_sphere, sample_uniform_sphere};
+pub use spherical_rectangle::SphericalRectangle;
+pub use spherical_triangle::{SphericalError, SphericalTriangle};
 pub use tent::{invert_tent, pdf_tent, sample_tent};
 pub use triangle::{invert_triangle, pdf_triangle, sample_triangle};
 
