@@ -1,8 +1,9 @@
 //! A histogram over a domain, and the counts that a density lets us expect in it.
 
+use crate::cells::Cells;
 use crate::domain::{Coordinates, Domain, IntoPoint};
 use crate::outcome::Outcome;
-use crate::quadrature::{Hint, Integral, Rectangle, integrate};
+use crate::quadrature::{Hint, Integral, integrate};
 use crate::suite::Check;
 use crate::verdict::{Undecided, Violation};
 
@@ -60,10 +61,14 @@ pub(crate) fn checked_point<P: Coordinates>(sample: impl IntoPoint<P>) -> Result
     if point.is_finite() { Ok(point) } else { Err(Violation::NotFinite { what: "sample", at: format!("{point:?}") }) }
 }
 
-/// A histogram over a regular grid in the parameters of a domain, whose cells have equal measure.
+fn parameters<D: Domain>(domain: &D, point: D::Point) -> Result<[f64; 2], Violation> {
+    domain.parameters(point).ok_or_else(|| Violation::OutsideDomain { sample: format!("{point:?}") })
+}
+
+/// A histogram over cells in the parameters of a domain.
 pub(crate) struct Bins<'a, D: Domain> {
     domain: &'a D,
-    shape: [usize; 2],
+    cells: Cells,
     counts: Vec<u64>,
     hints: Vec<Vec<Hint>>,
 }
@@ -75,17 +80,23 @@ pub(crate) struct Masses {
 }
 
 impl<'a, D: Domain> Bins<'a, D> {
-    pub(crate) fn new(domain: &'a D, shape: [usize; 2]) -> Self {
-        let shape = if D::DIMENSIONS == 1 { [shape[0] * shape[1], 1] } else { shape };
-        let cells = shape[0] * shape[1];
-        Self { domain, shape, counts: vec![0; cells], hints: vec![Vec::new(); cells] }
+    /// Empty bins: a regular grid, refined to a resolution where a pilot sample is dense.
+    pub(crate) fn new(
+        domain: &'a D,
+        shape: [usize; 2],
+        pilot: &[D::Point],
+        resolution: f64,
+    ) -> Result<Self, Violation> {
+        let pilot: Result<Vec<_>, _> = pilot.iter().map(|&point| parameters(domain, point)).collect();
+        let cells = Cells::new(D::DIMENSIONS, shape, &pilot?, resolution);
+        let count = cells.leaves().len();
+        Ok(Self { domain, cells, counts: vec![0; count], hints: vec![Vec::new(); count] })
     }
 
     /// Counts a sample at which the density is known.
     pub(crate) fn add(&mut self, point: D::Point, density: f64) -> Result<(), Violation> {
-        let at =
-            self.domain.parameters(point).ok_or_else(|| Violation::OutsideDomain { sample: format!("{point:?}") })?;
-        let cell = self.cell(at);
+        let at = parameters(self.domain, point)?;
+        let cell = self.cells.locate(at);
         self.counts[cell] += 1;
         let hint = Hint { at, value: density * self.domain.measure() };
         let hints = &mut self.hints[cell];
@@ -96,13 +107,6 @@ impl<'a, D: Domain> Bins<'a, D> {
             hints[HINTS - 1] = hint;
         }
         Ok(())
-    }
-
-    fn cell(&self, [u, v]: [f64; 2]) -> usize {
-        let [rows, columns] = self.shape;
-        let row = ((u * rows as f64) as usize).min(rows - 1);
-        let column = ((v * columns as f64) as usize).min(columns - 1);
-        row * columns + column
     }
 
     /// Integrates the density over each cell, to an accuracy that `samples` samples cannot resolve.
@@ -118,8 +122,7 @@ impl<'a, D: Domain> Bins<'a, D> {
         let tolerance = |mass: f64| ERROR_PER_DEVIATION * (mass * n + 1.0).sqrt() / n;
         let mut total = Integral { value: 0.0, error: 0.0, evaluations: 0, converged: true };
         let mut cells = Vec::with_capacity(self.counts.len());
-        for (index, hints) in self.hints.iter().enumerate() {
-            let rectangle = Rectangle::cell(index, self.shape);
+        for (&rectangle, hints) in self.cells.leaves().iter().zip(&self.hints) {
             let left = budget.saturating_sub(total.evaluations);
             let mass = integrate(D::DIMENSIONS, [rectangle], hints, &mut f, tolerance, left)?;
             total.value += mass.value;
@@ -160,7 +163,7 @@ impl<'a, D: Domain> Bins<'a, D> {
         let shifts = [[EDGE, 0.0], [-EDGE, 0.0], [0.0, EDGE], [0.0, -EDGE]];
         shifts
             .into_iter()
-            .map(|[du, dv]| self.cell([(u + du).clamp(0.0, 1.0), (v + dv).rem_euclid(1.0)]))
+            .map(|[du, dv]| self.cells.locate([(u + du).clamp(0.0, 1.0), (v + dv).rem_euclid(1.0)]))
             .find(|&cell| masses[cell] > 0.0)
     }
 }

@@ -4,6 +4,7 @@
 
 mod bins;
 mod blocks;
+mod cells;
 mod chi_square;
 mod correlation;
 mod distributions;

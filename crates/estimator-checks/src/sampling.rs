@@ -1,6 +1,6 @@
 //! The laws that tie a sampler, its density and the function it is made for together.
 
-use crate::bins::{Bins, Stop, checked_density, checked_point};
+use crate::bins::{Stop, checked_density, checked_point};
 use crate::chi_square::{ChiSquare, Missing};
 use crate::domain::{Domain, IntoPoint};
 use crate::mean::{Truth, mean_is};
@@ -177,7 +177,7 @@ impl<D: Domain + Clone> SamplingCheck<D> {
         eval: &impl Fn(D::Point) -> f64,
     ) -> Result<Drawn<D::Point>, Violation> {
         let mut uniforms = check.uniforms();
-        let mut bins = Bins::new(&self.chi_square.domain, self.chi_square.cells);
+        let mut bins = self.chi_square.bins(&mut uniforms, |u| sample(u).map(|sampled| sampled.point))?;
         let mut comparison = Comparison { tolerance: self.tolerance, worst: 0.0, unequal: None };
         let mut weights = Moments::new();
         let mut missing = 0;
