@@ -183,7 +183,7 @@ fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderS
         ("sampler", name(settings.sampler.to_possible_value())),
         ("seed", settings.seed.to_string()),
         ("maxDepth", if settings.max_depth == u32::MAX { "-1".to_owned() } else { settings.max_depth.to_string() }),
-        ("software", concat!("Lichtwerk ", env!("CARGO_PKG_VERSION")).to_owned()),
+        ("renderer", concat!("Lichtwerk ", env!("CARGO_PKG_VERSION")).to_owned()),
     ];
     for (key, text) in texts {
         // Attributes are a service: one that does not fit is no reason to lose the image.
@@ -288,17 +288,15 @@ fn stats(arguments: &RenderArguments, rendering: &Rendering, load_seconds: f64) 
 /// What looks at a rendering while it goes on: progress, viewer, Ctrl-C.
 struct Watch {
     progress: Progress,
-    by_time: bool,
-    pixels: u64,
     display: Display,
     interrupt: Interrupt,
 }
 
 impl Watch {
     fn new(arguments: &RenderArguments, settings: &RenderSettings, name: &str) -> Self {
-        let (progress, by_time) = match settings.budget {
-            Budget::Samples(samples) => (Progress::counting(samples, "samples per pixel"), false),
-            Budget::Seconds(seconds) => (Progress::timed(Duration::from_secs_f64(seconds), "samples per pixel"), true),
+        let progress = match settings.budget {
+            Budget::Samples(samples) => Progress::counting(samples, "samples per pixel"),
+            Budget::Seconds(seconds) => Progress::timed(Duration::from_secs_f64(seconds), "samples per pixel"),
         };
         let display = arguments.display_server.as_deref().map_or_else(Display::none, |server| {
             Display::connect(server, name).unwrap_or_else(|error| {
@@ -308,14 +306,11 @@ impl Watch {
         });
         // Another handler in the process keeps its Ctrl-C.
         let interrupt = Interrupt::install().unwrap_or_else(|_| Interrupt::inactive());
-        Self { progress, by_time, pixels: 0, display, interrupt }
+        Self { progress, display, interrupt }
     }
 
     fn observe(&mut self, pass: Pass<'_>) -> ControlFlow<()> {
-        self.pixels = u64::from(pass.film.width()) * u64::from(pass.film.height());
-        let new = pass.samples - self.progress.done();
-        self.progress.add(new);
-        let _ = self.by_time;
+        self.progress.add(pass.samples - self.progress.done());
         if self.display.is_due() {
             self.show(&pass.film.develop(pass.light_paths));
         }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use scene_core::builtin;
 use scene_core::film::LayeredImage;
-use scene_core::{ReferenceScene, Scene};
+use scene_core::{ReferenceScene, Scene, Sensor};
 
 use super::render::{EstimatorName, RenderSettings, render_to_image};
 use super::{Failure, ShowcaseArguments, print};

@@ -312,9 +312,10 @@ impl<'d> Builder<'d> {
             (mesh.clone(), to_world)
         };
         self.triangles += placed.len() as u64;
-        if placed.dropped() > 0 {
-            let dropped = placed.dropped();
-            self.warnings.push(format!("instance {index}: dropped {dropped} triangles without area or with coordinates that are not finite"));
+        // What the mesh itself dropped was for its maker to report.
+        let dropped = placed.dropped() - mesh.dropped();
+        if dropped > 0 {
+            self.warnings.push(format!("instance {index}: its transform leaves {dropped} triangles without area, which are dropped"));
         }
         if radiance == Rgb::ZERO {
             return Ok(None);
