@@ -1,5 +1,6 @@
 //! The importer: bad input of every kind is an error that says where, never a panic.
 #![cfg(feature = "mitsuba")]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 mod mitsuba_support;
 

@@ -1,8 +1,8 @@
 //! Materials.
 
-use super::document::{Object, Tag, Value};
 use super::error::Result;
 use super::importer::Importer;
+use super::object::{Object, Tag, Value};
 use crate::material::{Distribution, Material, conductors, dielectrics};
 use crate::reference::MaterialId;
 use crate::texture::Texture;

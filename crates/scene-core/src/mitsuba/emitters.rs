@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3A};
 
-use super::document::{Object, Tag};
 use super::error::Result;
 use super::importer::Importer;
+use super::object::{Object, Tag};
 use super::transforms;
 use crate::reference::Light;
 use crate::texture::ColorSpace;

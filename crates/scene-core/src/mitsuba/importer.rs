@@ -4,8 +4,9 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::document::{Document, Object, Tag};
+use super::document::Document;
 use super::error::{ImportError, Place, Result};
+use super::object::{Object, Tag};
 use super::sensors::Camera;
 use super::shapes::{MeshKey, Placed};
 use super::xml::find_file;
@@ -27,6 +28,8 @@ pub(super) struct Importer<'d> {
     pub(super) images: HashMap<(PathBuf, ColorSpace), Arc<Image>>,
     /// Nothing stands for a mesh without usable triangles.
     pub(super) meshes: HashMap<MeshKey, Option<ShapeId>>,
+    /// Triangles that were dropped because they have no area.
+    pub(super) without_area: usize,
     pub(super) primitives: HashMap<(&'static str, bool), ShapeId>,
     /// Materials by the object that they come from; nothing is the default.
     pub(super) material_ids: HashMap<Option<usize>, MaterialId>,
@@ -46,6 +49,7 @@ impl<'d> Importer<'d> {
             warned: HashSet::new(),
             images: HashMap::new(),
             meshes: HashMap::new(),
+            without_area: 0,
             primitives: HashMap::new(),
             material_ids: HashMap::new(),
             groups: HashMap::new(),
@@ -106,6 +110,9 @@ impl<'d> Importer<'d> {
             }
         }
         self.check_unused_objects()?;
+        if self.without_area > 0 {
+            self.warn(format!("{}: dropped {} triangles without area", path.display(), self.without_area));
+        }
         let Some(Camera { description, filter, samples_per_pixel }) = camera else {
             return Err(ImportError::NoSensor { path: path.to_path_buf() });
         };

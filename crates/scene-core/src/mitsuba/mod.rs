@@ -1,7 +1,7 @@
 //! Importer for scenes in Mitsuba 3's XML format.
 //!
 //! [`load`] reads a file and what it names (included files, meshes, textures) into a
-//! [`SceneDescription`](crate::reference::SceneDescription). Conventions, defaults and corner cases are those of
+//! [`SceneDescription`]. Conventions, defaults and corner cases are those of
 //! Mitsuba 3.9, measured, so that the same file gives the same picture; files of versions below 2.0 with their
 //! `toWorld` and `intIOR` are read as Mitsuba reads them.
 //!
@@ -19,7 +19,7 @@
 //! # Errors and warnings
 //! An unknown plugin is an error, because the picture would be another one; it names file, line and plugin. An unknown
 //! parameter is a warning with file, line and name in
-//! [`SceneDescription::warnings`](crate::reference::SceneDescription::warnings). Bad input of any kind (a missing or truncated file, an
+//! [`SceneDescription::warnings`]. Bad input of any kind (a missing or truncated file, an
 //! index out of range, a header that promises more than the file holds, a transform without inverse, files that
 //! include each other) is an [`ImportError`], never a panic. Triangles with vertices that are not finite are dropped
 //! and counted in a warning.
@@ -39,6 +39,7 @@ mod error;
 mod importer;
 mod names;
 mod obj;
+mod object;
 mod parameters;
 mod ply;
 mod primitives;

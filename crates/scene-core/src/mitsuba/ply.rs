@@ -267,6 +267,19 @@ mod tests {
     }
 
     #[test]
+    fn damaged_bytes_do_not_panic() {
+        for bytes in [ascii("0 4 0 1 2 3").into_bytes(), binary(true), binary(false)] {
+            for position in 0..bytes.len() {
+                for mask in [0xff, 0x01, 0x80] {
+                    let mut damaged = bytes.clone();
+                    damaged[position] ^= mask;
+                    drop(read(&damaged));
+                }
+            }
+        }
+    }
+
+    #[test]
     fn absurd_counts_do_not_allocate() {
         for (vertices, faces) in [("4294967295", "1"), ("18446744073709551615", "1"), ("1", "4000000000")] {
             for format in ["ascii", "binary_little_endian"] {

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::document::Value;
 use super::error::{Place, Result};
+use super::object::Value;
 use super::values;
 use super::xml::find_file;
 

@@ -46,6 +46,13 @@ pub(super) struct MeshOptions {
 }
 
 impl RawMesh {
+    /// How many triangles have vertices that are not finite.
+    pub(super) fn count_not_finite(&self) -> usize {
+        let is_finite =
+            |&vertex: &u32| self.positions.get(vertex as usize).is_none_or(|p| p.iter().all(|x| x.is_finite()));
+        self.triangles.iter().filter(|triangle| !triangle.iter().all(is_finite)).count()
+    }
+
     /// The mesh in its own coordinates, such that it looks in the world (after `to_world`) as Mitsuba shows it.
     ///
     /// Mitsuba moves vertices to the world before anything else. Two things depend on that: smooth normals, which it

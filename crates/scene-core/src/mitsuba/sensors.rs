@@ -2,9 +2,9 @@
 
 use std::f32::consts::PI;
 
-use super::document::{Object, Tag};
 use super::error::Result;
 use super::importer::Importer;
+use super::object::{Object, Tag};
 use super::transforms;
 use crate::reference::{CameraDescription, FilterDescription};
 

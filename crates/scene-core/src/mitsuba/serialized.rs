@@ -3,7 +3,7 @@
 //! A file is a sequence of meshes, each a header (`0x041C`, version) and a zlib stream, and ends with a directory: the
 //! offset of each mesh (4 bytes in version 3, 8 in version 4) and their number. All numbers are little endian.
 
-use std::io::{ErrorKind, Read};
+use std::io::{BufReader, ErrorKind, Read};
 
 use flate2::read::ZlibDecoder;
 
@@ -28,7 +28,7 @@ pub(super) fn read(bytes: &[u8], shape: usize) -> Result<RawMesh, MeshFileError>
     let stream = &bytes[offset(bytes, shape, version)?..];
     check_magic(stream)?;
     let limit = stream.len() as u64 * LARGEST_RATIO;
-    let mut source = Source { stream: ZlibDecoder::new(&stream[4..]), double: false };
+    let mut source = Source { stream: BufReader::new(ZlibDecoder::new(&stream[4..])), double: false };
 
     let flags = source.u32()?;
     if version == 4 {

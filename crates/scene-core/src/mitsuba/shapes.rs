@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use glam::{Affine3A, DAffine3, Vec3A};
 
-use super::document::{Object, Tag};
 use super::error::Result;
 use super::importer::Importer;
-use super::raw_mesh::{MeshFileError, MeshOptions, RawMesh};
+use super::object::{Object, Tag};
+use super::raw_mesh::{MeshOptions, RawMesh};
 use super::{obj, ply, primitives, serialized, transforms};
-use crate::reference::{Instance, MaterialId, Shape, ShapeId, TriangleMesh};
+use crate::reference::{Instance, MaterialId, Shape, ShapeId};
 use crate::traits::Rgb;
 
 /// A shape that has everything but, inside a group, its final place.
@@ -90,7 +90,7 @@ impl Importer<'_> {
             "sphere" => Some(self.sphere(object, flip_normals, &to_world)?),
             "disk" => {
                 if flip_normals {
-                    to_world = to_world * Affine3A::from_rotation_x(std::f32::consts::PI);
+                    to_world *= Affine3A::from_rotation_x(std::f32::consts::PI);
                 }
                 Some(self.add_shape(Shape::Disk))
             }
@@ -175,24 +175,22 @@ impl Importer<'_> {
             "ply" => ply::read(&bytes),
             _ => serialized::read(&bytes, number),
         };
-        let finish =
-            |raw: RawMesh| raw.finish(options, to_world).map_err(|error| MeshFileError::new(error.to_string()));
-        let mesh = raw.and_then(finish).map_err(|error| place.data(&path, error.to_string()))?;
-        let shape = self.checked_mesh(mesh, &path.display().to_string());
+        let raw = raw.map_err(|error| place.data(&path, error.to_string()))?;
+        let not_finite = raw.count_not_finite();
+        let mesh = raw.finish(options, to_world).map_err(|error| place.data(&path, error.to_string()))?;
+        self.without_area += mesh.dropped() - not_finite;
+        if not_finite > 0 {
+            let path = path.display();
+            self.warn(format!("{path}: dropped {not_finite} triangles with vertices that are not finite"));
+        }
+        let shape = if mesh.is_empty() {
+            self.warn(format!("{}: ignored, there is no usable triangle", path.display()));
+            None
+        } else {
+            Some(self.add_shape(Shape::Mesh(Arc::new(mesh))))
+        };
         self.meshes.insert(key, shape);
         Ok(shape)
-    }
-
-    fn checked_mesh(&mut self, mesh: TriangleMesh, path: &str) -> Option<ShapeId> {
-        if mesh.dropped() > 0 {
-            let dropped = mesh.dropped();
-            self.warn(format!("{path}: dropped {dropped} triangles without area or with vertices that are not finite"));
-        }
-        if mesh.is_empty() {
-            self.warn(format!("{path}: ignored, there is no usable triangle"));
-            return None;
-        }
-        Some(self.add_shape(Shape::Mesh(Arc::new(mesh))))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::document::{Object, Tag, Value};
 use super::error::{Place, Result};
 use super::importer::Importer;
+use super::object::{Object, Tag, Value};
 use super::spectra;
 use crate::texture::{ColorSpace, Image, ImageTexture, Interpolation, Texture, Wrap};
 use crate::traits::Rgb;
@@ -27,9 +27,10 @@ impl Importer<'_> {
         texture.constant().map(Some).ok_or_else(unsupported)
     }
 
-    /// A number, or the same number in all components.
+    /// A number, or a colour whose components are all the same.
     pub(super) fn scalar(&mut self, object: &Object, name: &str) -> Result<Option<f32>> {
-        Ok(self.color(object, name)?.map(Rgb::mean))
+        let Some([r, g, b]) = self.color(object, name)?.map(Rgb::to_array) else { return Ok(None) };
+        if r == g && g == b { Ok(Some(r)) } else { Err(object.place.invalid(format!("`{name}` must be a number"))) }
     }
 
     fn property_color(&mut self, object: &Object, name: &str) -> Result<Option<Rgb>> {

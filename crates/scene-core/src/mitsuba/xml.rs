@@ -6,8 +6,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use roxmltree::{Node, ParsingOptions};
 
-use super::document::{Child, Document, Object, Property, Tag, Target, Value};
+use super::document::Document;
 use super::error::{ImportError, Place, Result};
+use super::object::{Child, Object, Property, Tag, Target, Value};
 use super::parameters::Parameters;
 use super::property::{self, Attributes};
 use super::{names, transforms};
