@@ -186,7 +186,7 @@ impl<D: Domain> ChiSquare<D> {
         if !(self.min_expected > 0.0 && self.min_expected.is_finite()) {
             return argument(format!("{} is no minimum of expected counts", self.min_expected));
         }
-        if !(self.resolution > 0.0) {
+        if !(self.resolution > 0.0 && self.resolution.is_finite()) {
             return argument(format!("{} is no resolution", self.resolution));
         }
         if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
