@@ -1,5 +1,6 @@
 //! The samplers beside their peers, in one run: `cargo bench -p qmc-sampling`. Throughput is in values.
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
+use qmc_sampling::sampler::{GlobalSobol, PaddedLattice, ZSobol};
 use qmc_sampling::{Independent, OwenSobol, Sampler, SamplerFamily};
 use rand::Rng;
 use std::hint::black_box;
@@ -25,6 +26,20 @@ fn four_dimensions(criterion: &mut Criterion) {
             let mut sum = [0.0; 4];
             for index in 0..PATHS {
                 let mut sampler = family.sampler(black_box(77), u64::from(index));
+                for _ in 0..GROUPS {
+                    add(&mut sum, sampler.next_4d());
+                }
+            }
+            sum
+        });
+    });
+    group.bench_function("qmc-sampling GlobalSobol, 2^32 points", |bencher| {
+        // 4096 x 4096 pixels, 256 paths each
+        let family = GlobalSobol::new(4096, 4096, black_box(1)).expect("a valid size");
+        bencher.iter(|| {
+            let mut sum = [0.0; 4];
+            for index in 0..PATHS {
+                let mut sampler = family.sampler(black_box(77_777), u64::from(index));
                 for _ in 0..GROUPS {
                     add(&mut sum, sampler.next_4d());
                 }
@@ -80,5 +95,31 @@ fn add(sum: &mut [f32; 4], values: [f32; 4]) {
     }
 }
 
-criterion_group!(benches, four_dimensions, independent);
+/// As a path takes them: in pairs.
+fn pairs(criterion: &mut Criterion) {
+    fn bench(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, family: &impl SamplerFamily) {
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let mut sum = [0.0; 4];
+                for index in 0..PATHS {
+                    let mut sampler = family.sampler(black_box(77_777), u64::from(index));
+                    for _ in 0..GROUPS {
+                        let ([a, b], [c, d]) = (sampler.next_2d(), sampler.next_2d());
+                        add(&mut sum, [a, b, c, d]);
+                    }
+                }
+                sum
+            });
+        });
+    }
+    let mut group = group(criterion, "in pairs");
+    bench(&mut group, "Independent", &Independent::new(1));
+    bench(&mut group, "OwenSobol", &OwenSobol::new(1));
+    bench(&mut group, "GlobalSobol", &GlobalSobol::new(4096, 4096, 1).expect("a valid size"));
+    bench(&mut group, "ZSobol", &ZSobol::new(4096, 4096, PATHS, 1).expect("a valid size"));
+    bench(&mut group, "PaddedLattice", &PaddedLattice::new(1));
+    group.finish();
+}
+
+criterion_group!(benches, four_dimensions, independent, pairs);
 criterion_main!(benches);
