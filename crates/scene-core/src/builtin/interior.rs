@@ -76,13 +76,15 @@ fn lights(b: &mut SceneBuilder) {
     // A panel that hangs from the ceiling and shines down.
     b.cuboid(metal, v(-0.6, 2.53, 0.2), v(0.62, 0.02, 0.17), 0.0);
     b.quad(dark, v(-1.2, 2.505, 0.05), v(1.2, 0.0, 0.0), v(0.0, 0.0, 0.3));
-    b.emit(Rgb::new(17.0, 14.5, 11.0));
+    b.emit(Rgb::new(34.0, 29.0, 22.0));
     // An uplight in the corner: a stem and a bowl that hides the bulb.
     let base = v(-2.55, 0.0, 1.75);
-    b.lathe(metal, base, &[[0.14, 0.0], [0.14, 0.02], [0.015, 0.03], [0.015, 1.7], [0.05, 1.72], [0.2, 1.86]], 48);
-    b.sphere(dark, base + v(0.0, 1.8, 0.0), 0.045).emit(Rgb::new(210.0, 150.0, 85.0));
+    let bowl = b.diffuse(0.55, 0.5, 0.42);
+    b.lathe(metal, base, &[[0.14, 0.0], [0.14, 0.02], [0.015, 0.03], [0.015, 1.7]], 48);
+    b.lathe(bowl, base, &[[0.015, 1.7], [0.08, 1.72], [0.17, 1.78], [0.22, 1.87]], 48);
+    b.sphere(dark, base + v(0.0, 1.8, 0.0), 0.06).emit(Rgb::new(190.0, 130.0, 72.0));
     // A glowing ball on the sideboard.
-    b.sphere(dark, v(-2.68, 0.95, -0.6), 0.11).emit(Rgb::new(9.0, 5.2, 2.2));
+    b.sphere(dark, v(-2.68, 0.95, -0.6), 0.11).emit(Rgb::new(14.0, 8.2, 3.6));
 }
 
 fn metal(name: &str, alpha: f32) -> Material {
