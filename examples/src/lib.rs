@@ -1,1 +1,4 @@
 //! Renderers composed from the Lichtwerk crates.
+
+pub mod metrics;
+pub mod output;
