@@ -1,4 +1,5 @@
 //! The film against closed forms, and its independence of how the work is split.
+#![allow(clippy::unwrap_used)]
 
 use scene_core::film::{
     Attribute, Film, FilmError, Filter, LayeredImage, LayeredImageError, MAX_PIXELS, SAMPLES_PER_PIXEL, SplatBuffer,

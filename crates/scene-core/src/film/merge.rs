@@ -20,18 +20,18 @@ impl LayeredImage {
     /// If there are no images, they differ in size or channels, or one does not tell a positive sample count.
     ///
     /// ```
-    /// use scene_core::film::{LayeredImage, SAMPLES_PER_PIXEL};
+    /// use scene_core::film::{LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL};
     ///
     /// let image = |value, samples: u32| {
     ///     let mut image = LayeredImage::new(1, 1)?;
     ///     image.set_rgb(&[[value; 3]])?;
     ///     image.set_attribute(SAMPLES_PER_PIXEL, samples)?;
-    ///     Ok(image)
+    ///     Ok::<_, LayeredImageError>(image)
     /// };
     /// let merged = LayeredImage::merge(&[image(1.0, 30)?, image(2.0, 10)?])?;
     /// assert_eq!(merged.rgb()?, [[1.25; 3]]);
     /// assert_eq!(merged.attribute(SAMPLES_PER_PIXEL).and_then(|spp| spp.as_u64()), Some(40));
-    /// # Ok::<(), scene_core::film::LayeredImageError>(())
+    /// # Ok::<(), LayeredImageError>(())
     /// ```
     pub fn merge(images: &[Self]) -> Result<Self, LayeredImageError> {
         let first = images.first().ok_or(LayeredImageError::NoImages)?;

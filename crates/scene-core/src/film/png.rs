@@ -19,8 +19,12 @@ use super::{ImageFileError, LayeredImage};
 /// assert_eq!(srgb_from_linear(f32::INFINITY), 1.0);
 /// ```
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    let linear = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    match linear {
+        x if x >= 1.0 => 1.0,
+        x if x > 0.003_130_8 => 1.055 * x.powf(1.0 / 2.4) - 0.055,
+        x if x > 0.0 => 12.92 * x,
+        _ => 0.0,
+    }
 }
 
 impl LayeredImage {
