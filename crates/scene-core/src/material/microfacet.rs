@@ -184,12 +184,11 @@ fn visible_slope(cos: f32, u: f32) -> f32 {
             low = y
         }
         let step = error / (cos - slope * sin).max(1e-6);
-        let next = y - step;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - y).abs() < 2e-7 {
+        if step.abs() < 1e-7 || high - low < 1e-7 {
             break;
         }
-        y = next;
+        let next = y - step;
+        y = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     erf_inverse(y)
 }

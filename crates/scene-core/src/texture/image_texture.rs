@@ -70,8 +70,8 @@ impl ImageTexture {
         let [u, v] = transform_uv(&self.uv_transform, uv);
         let (width, height) = (self.image.width(), self.image.height());
         if self.interpolation == Interpolation::Nearest {
-            let (u, _) = self.into_unit(u);
-            let (v, _) = self.into_unit(v);
+            let (u, _) = self.wrapped(u);
+            let (v, _) = self.wrapped(v);
             let x = ((u * width as f32) as u32).min(width - 1);
             let y = ((v * height as f32) as u32).min(height - 1);
             return self.image.pixel(x, y) * self.scale;
@@ -107,7 +107,7 @@ impl ImageTexture {
 
     /// Brings a coordinate into `[0, 1]`; the second value is -1 where that mirrored it.
     #[inline]
-    fn into_unit(&self, t: f32) -> (f32, f32) {
+    fn wrapped(&self, t: f32) -> (f32, f32) {
         if !t.is_finite() {
             return (0.0, 1.0);
         }
@@ -123,7 +123,7 @@ impl ImageTexture {
 
     #[inline]
     fn span(&self, t: f32, size: u32) -> Span {
-        let (t, sign) = self.into_unit(t);
+        let (t, sign) = self.wrapped(t);
         let x = t * size as f32 - 0.5;
         let floor = x.floor();
         let low = floor as i32;

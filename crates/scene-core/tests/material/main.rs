@@ -1,0 +1,9 @@
+//! The materials: against Mitsuba 3.9.1, against their laws, and against quadrature.
+#![cfg(feature = "reference")]
+
+mod cases;
+mod laws;
+mod mitsuba;
+mod quadrature;
+mod robust;
+mod wrappers;
