@@ -1,14 +1,27 @@
 //! Renderer-neutral scene traits, and a reference scene that implements them.
 
+#[cfg(feature = "reference")]
+pub mod builtin;
+mod counting;
+pub mod film;
 mod frame;
 #[cfg(feature = "reference")]
 pub mod material;
-pub mod ray;
+#[cfg(feature = "mitsuba")]
+pub mod mitsuba;
+mod ray;
+#[cfg(feature = "reference")]
+pub mod reference;
 #[cfg(feature = "reference")]
 pub mod texture;
-pub mod traits;
+mod traits;
+mod walk;
 
+pub use counting::{Counting, RayCounts};
 pub use frame::Frame;
 pub use glam;
 pub use ray::{Ray, SurfacePoint};
+#[cfg(feature = "reference")]
+pub use reference::{PowerChoice, ReferenceScene, SceneDescription, SceneError, UniformChoice};
 pub use traits::*;
+pub use walk::{RussianRoulette, WalkStart, WalkVertex, random_walk};

@@ -1,2 +1,5 @@
-//! The lichtwerk program.
-fn main() {}
+//! The `lichtwerk` program; see [`lichtwerk::program`].
+
+fn main() -> std::process::ExitCode {
+    lichtwerk::program::main()
+}

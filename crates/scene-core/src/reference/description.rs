@@ -9,7 +9,7 @@ use crate::material::Material;
 use crate::texture::Image;
 use crate::traits::Rgb;
 
-use super::mesh::TriangleMesh;
+use super::geometry::TriangleMesh;
 
 /// Index of a shape in [`SceneDescription::shapes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

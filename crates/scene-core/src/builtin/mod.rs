@@ -1,0 +1,74 @@
+//! Scenes that need no file: generated here, so that everything runs with no download.
+
+mod cornell_box;
+mod furnace;
+mod interior;
+mod shapes;
+
+use crate::reference::SceneDescription;
+
+pub use cornell_box::cornell_box;
+pub use furnace::{furnace, furnace_box};
+pub use interior::interior;
+pub use shapes::SceneBuilder;
+
+/// A builtin scene.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Builtin {
+    /// The name by which it is asked for.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub about: &'static str,
+    make: fn() -> SceneDescription,
+}
+
+impl Builtin {
+    /// All builtin scenes.
+    pub const ALL: &'static [Self] = &[
+        Self { name: "cornell-box", about: "the Cornell box, as measured", make: cornell_box },
+        Self { name: "furnace", about: "a sphere of albedo 0.8 in uniform light: every pixel on it is 0.8", make: furnace_sphere },
+        Self {
+            name: "furnace-box",
+            about: "a closed box of albedo 0.5 that emits 1 everywhere: every pixel is 2",
+            make: furnace_box_half,
+        },
+        Self { name: "interior", about: "a furnished room in the evening, lit by a ceiling panel and a lamp", make: interior },
+    ];
+
+    /// The builtin scene of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|builtin| builtin.name == name)
+    }
+
+    /// Its description.
+    pub fn description(&self) -> SceneDescription {
+        (self.make)()
+    }
+}
+
+fn furnace_sphere() -> SceneDescription {
+    furnace(crate::material::Material::Diffuse { reflectance: crate::traits::Rgb::splat(0.8).into() })
+}
+
+fn furnace_box_half() -> SceneDescription {
+    furnace_box(0.5, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::ReferenceScene;
+    use crate::traits::Scene;
+
+    #[test]
+    fn all_build_without_warnings_and_have_light() {
+        for builtin in Builtin::ALL {
+            let scene = ReferenceScene::new(builtin.description()).unwrap();
+            assert_eq!(scene.warnings(), &[] as &[String], "{}", builtin.name);
+            assert!(!scene.emitters().is_empty(), "{}", builtin.name);
+            assert_eq!(scene.name(), builtin.name);
+        }
+        assert!(Builtin::named("nowhere").is_none());
+    }
+}

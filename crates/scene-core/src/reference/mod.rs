@@ -1,0 +1,21 @@
+//! The reference scene: meshes, spheres and disks, materials, emitters and a perspective camera behind the
+//! [traits](crate::traits).
+
+mod camera;
+mod description;
+mod emitters;
+mod geometry;
+mod scene;
+mod vertex;
+
+pub use camera::{CameraError, PerspectiveCamera};
+pub use description::{
+    CameraDescription, FilterDescription, Instance, Light, MaterialId, SceneDescription, Shape, ShapeId,
+};
+pub use emitters::{
+    DirectionalEmitter, DiskEmitter, EnvironmentEmitter, MeshEmitter, PointEmitter, PowerChoice, ReferenceEmitter,
+    SphereEmitter, SpotEmitter, UniformChoice,
+};
+pub use geometry::{MeshError, TriangleMesh};
+pub use scene::{ReferenceScene, SceneError};
+pub use vertex::SceneVertex;

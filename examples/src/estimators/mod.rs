@@ -1,0 +1,66 @@
+//! Estimators of the image: each adds up one kind of paths, against the scene traits alone.
+
+mod ambient_occlusion;
+mod light;
+mod path;
+
+use scene_core::{Ray, Scene, Spectrum, Vertex};
+
+use qmc_sampling::Sampler;
+
+pub use ambient_occlusion::AmbientOcclusion;
+pub use light::LightTracer;
+pub use path::{FirstEvent, PathTracer};
+
+/// What a camera ray hit first, for auxiliary images.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FirstHit {
+    /// Albedo, linear RGB.
+    pub albedo: [f32; 3],
+    /// Unit shading normal.
+    pub normal: [f32; 3],
+    /// Distance from the sensor.
+    pub depth: f32,
+}
+
+impl FirstHit {
+    /// Of a vertex that `ray` hit.
+    pub fn new<V: Vertex>(ray: &Ray, vertex: &V) -> Self {
+        Self {
+            albedo: vertex.albedo().to_rgb(),
+            normal: vertex.shading_normal().to_array(),
+            depth: (vertex.point().position - ray.origin).length(),
+        }
+    }
+}
+
+/// An estimator that starts at the sensor: one ray gives one sample of a pixel.
+pub trait CameraEstimator: Sync {
+    /// An estimate of the radiance that arrives along `ray`, and what the ray hit first.
+    fn radiance<S: Scene>(
+        &self,
+        scene: &S,
+        ray: Ray,
+        sampler: &mut impl Sampler,
+    ) -> (S::Spectrum, Option<FirstHit>);
+}
+
+/// An estimator that starts at the emitters: one path gives values for any pixels.
+pub trait LightEstimator: Sync {
+    /// Traces one light path; calls `splat` with raster positions and values. The mean over all paths, times the
+    /// reconstruction filter, is the image.
+    fn trace<S: Scene>(
+        &self,
+        scene: &S,
+        sampler: &mut impl Sampler,
+        splat: impl FnMut([f32; 2], S::Spectrum),
+    );
+}
+
+/// No light paths.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoLightPaths;
+
+impl LightEstimator for NoLightPaths {
+    fn trace<S: Scene>(&self, _: &S, _: &mut impl Sampler, _: impl FnMut([f32; 2], S::Spectrum)) {}
+}

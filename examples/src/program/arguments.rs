@@ -1,0 +1,200 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use super::render::{EstimatorName, FilterName, SamplerName};
+use crate::choices::{AnyHeuristic, LightSelection};
+
+/// Renders scenes with the estimators of the Lichtwerk crates, and measures them.
+#[derive(Debug, Parser)]
+#[command(version, about, after_help = "Without a subcommand, the showcase is rendered into out/.")]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// What the program can do.
+#[derive(Debug, Subcommand)]
+#[non_exhaustive]
+pub enum Command {
+    /// Render a builtin interior into out/, with a table of time, rays, error and efficiency.
+    Showcase(ShowcaseArguments),
+    /// Render a scene.
+    Render(Box<RenderArguments>),
+    /// Compare two images: MSE, relative MSE, MRSE, FLIP, ratio of the means.
+    Diff(DiffArguments),
+    /// List builtin scenes, estimators, heuristics and samplers.
+    List,
+}
+
+/// Arguments of `showcase`.
+#[derive(Clone, Debug, Args)]
+pub struct ShowcaseArguments {
+    /// Folder for the images.
+    #[arg(long, default_value = "out")]
+    pub out: PathBuf,
+    /// Samples per pixel.
+    #[arg(long, default_value_t = DEFAULT_SHOWCASE_SAMPLES, value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    pub spp: u64,
+    /// Size in pixels, as WIDTHxHEIGHT.
+    #[arg(long, value_parser = parse_size)]
+    pub size: Option<[u32; 2]>,
+    /// Number of threads; 0 is one per core.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+}
+
+const DEFAULT_SHOWCASE_SAMPLES: u64 = 64;
+
+impl Default for ShowcaseArguments {
+    fn default() -> Self {
+        Self { out: PathBuf::from("out"), spp: DEFAULT_SHOWCASE_SAMPLES, size: None, threads: 0 }
+    }
+}
+
+/// More samples per pixel than this are taken for a mistake.
+const MAX_SAMPLES: u64 = 1 << 32;
+
+/// Arguments of `render`.
+#[derive(Clone, Debug, Args)]
+pub struct RenderArguments {
+    /// A builtin scene (see `lichtwerk list`) or a Mitsuba 3 XML file.
+    pub scene: String,
+    /// What adds up the light.
+    #[arg(long, value_enum, default_value_t)]
+    pub estimator: EstimatorName,
+    /// How next event estimation and scattering are combined.
+    #[arg(long, value_enum, default_value_t)]
+    pub heuristic: AnyHeuristic,
+    /// How the emitter for next event estimation is chosen.
+    #[arg(long, value_enum, default_value_t)]
+    pub lights: LightSelection,
+    /// Where the random numbers come from.
+    #[arg(long, value_enum, default_value_t)]
+    pub sampler: SamplerName,
+    /// Samples per pixel [default: what the scene asks for, or 64].
+    #[arg(long, conflicts_with = "time", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    pub spp: Option<u64>,
+    /// Seconds to render instead of a number of samples.
+    #[arg(long, value_parser = parse_positive)]
+    pub time: Option<f64>,
+    /// Size in pixels, as WIDTHxHEIGHT [default: the scene's]. The horizontal angle of view stays.
+    #[arg(long, value_parser = parse_size)]
+    pub size: Option<[u32; 2]>,
+    /// Seed of all random numbers: same seed, same image, at any number of threads.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Number of threads; 0 is one per core.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+    /// Segments per path, as Mitsuba counts: 1 is visible emission, 2 direct light; -1 is unlimited
+    /// [default: the scene's].
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_depth)]
+    pub max_depth: Option<u32>,
+    /// Segments from which Russian roulette may end a path.
+    #[arg(long, default_value_t = 5)]
+    pub rr_depth: u32,
+    /// Reconstruction filter [default: the scene's].
+    #[arg(long, value_enum)]
+    pub filter: Option<FilterName>,
+    /// Distance up to which `ao` looks for occluders [default: a tenth of the scene's radius].
+    #[arg(long, value_parser = parse_positive)]
+    pub ao_distance: Option<f64>,
+    /// Image file, .exr (linear, with auxiliary channels) or .png; may be given more than once
+    /// [default: out/SCENE.exr and out/SCENE.png].
+    #[arg(long)]
+    pub out: Vec<PathBuf>,
+    /// Exposure of PNG files, in stops.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// File for time, rays and memory, as JSON.
+    #[arg(long)]
+    pub stats: Option<PathBuf>,
+    /// Show the image so far in the tev viewer that listens on HOST:PORT.
+    #[arg(long, value_name = "HOST:PORT")]
+    pub display_server: Option<String>,
+    /// Set a parameter of a Mitsuba file; may be given more than once.
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
+    pub definitions: Vec<(String, String)>,
+}
+
+/// Arguments of `diff`.
+#[derive(Clone, Debug, Args)]
+pub struct DiffArguments {
+    /// The image to judge.
+    pub image: PathBuf,
+    /// The image that is taken for the truth.
+    pub reference: PathBuf,
+    /// Also write the numbers to this file, as JSON.
+    #[arg(long)]
+    pub json: Option<PathBuf>,
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X'])?;
+        Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
+    };
+    match parse() {
+        Some([0, _] | [_, 0]) => Err("an image needs at least one pixel in each direction".to_owned()),
+        Some(size) => Ok(size),
+        None => Err("expected WIDTHxHEIGHT, as in 640x360".to_owned()),
+    }
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a positive number".to_owned()),
+    }
+}
+
+fn parse_depth(text: &str) -> Result<u32, String> {
+    match text.parse::<i64>() {
+        Ok(-1) => Ok(u32::MAX),
+        Ok(depth) if (1..i64::from(u32::MAX)).contains(&depth) => Ok(depth as u32),
+        _ => Err("expected a number of segments from 1, or -1 for no limit".to_owned()),
+    }
+}
+
+fn parse_definition(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_a_reason() {
+        for bad in [
+            &["--size", "0x5"][..],
+            &["--size", "5"],
+            &["--spp", "0"],
+            &["--spp", "99999999999"],
+            &["--time", "-1"],
+            &["--time", "inf"],
+            &["--max-depth", "0"],
+            &["--spp", "4", "--time", "1"],
+            &["-D", "=3"],
+            &["--estimator", "magic"],
+        ] {
+            let line = ["lichtwerk", "render", "cornell-box"].iter().chain(bad);
+            assert!(Arguments::try_parse_from(line).is_err(), "{bad:?}");
+        }
+        let fine = ["lichtwerk", "render", "cornell-box", "--max-depth", "-1", "-D", "spp=4", "--exposure", "-1.5"];
+        assert!(Arguments::try_parse_from(fine).is_ok());
+    }
+}

@@ -1,0 +1,60 @@
+//! From a name or a file to a scene.
+
+use std::path::Path;
+
+use scene_core::SceneDescription;
+use scene_core::builtin::Builtin;
+use scene_core::mitsuba::{self, ImportError};
+
+/// Why there is no scene.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// Neither a builtin name nor a file.
+    #[error("'{0}' is neither a builtin scene (see 'lichtwerk list') nor a file")]
+    Unknown(String),
+    /// A file of another kind.
+    #[error("{0}: unknown kind of scene file; Mitsuba 3 XML (.xml) can be read")]
+    Kind(String),
+    /// Parameters for something that has none.
+    #[error("the builtin scene '{0}' takes no parameters (-D)")]
+    Parameters(String),
+    /// The importer.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+}
+
+/// The description of a builtin scene or of a file.
+///
+/// # Errors
+/// No such scene, or the importer's error.
+pub fn load_description(scene: &str, definitions: &[(String, String)]) -> Result<SceneDescription, LoadError> {
+    if let Some(builtin) = Builtin::named(scene) {
+        return if definitions.is_empty() {
+            Ok(builtin.description())
+        } else {
+            Err(LoadError::Parameters(scene.to_owned()))
+        };
+    }
+    let path = Path::new(scene);
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("xml") => Ok(mitsuba::load(path, definitions)?),
+        _ if path.exists() => Err(LoadError::Kind(scene.to_owned())),
+        _ => Err(LoadError::Unknown(scene.to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_scene_is_named() {
+        let message = |scene: &str| load_description(scene, &[]).unwrap_err().to_string();
+        assert!(message("nowhere").contains("'nowhere' is neither"));
+        assert!(message("nowhere.xml").contains("nowhere.xml"));
+        assert!(message("Cargo.toml").contains("Cargo.toml: unknown kind"));
+        assert!(load_description("furnace", &[("a".into(), "b".into())]).is_err());
+        assert!(load_description("furnace", &[]).is_ok());
+    }
+}

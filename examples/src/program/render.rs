@@ -1,0 +1,342 @@
+//! `lichtwerk render`.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::ValueEnum;
+use qmc_sampling::{Independent, OwenSobol, SamplerFamily};
+use scene_core::film::{Filter, FilterError, LayeredImage};
+use scene_core::reference::FilterDescription;
+use scene_core::{ReferenceScene, RussianRoulette, Scene};
+
+use super::{Failure, RenderArguments, load_description, report};
+use crate::choices::{AnyChoice, AnyHeuristic, LightSelection};
+use crate::estimators::{AmbientOcclusion, FirstEvent, LightTracer, NoLightPaths, PathTracer};
+use crate::output::{Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json};
+use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering};
+
+/// The estimators.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorName {
+    /// Path tracing: next event estimation and scattering, combined by the heuristic.
+    #[default]
+    Path,
+    /// Light tracing; what it cannot find (specular next to the sensor) by path tracing.
+    Light,
+    /// Emission and direct light only: path tracing with two segments.
+    Direct,
+    /// Ambient occlusion.
+    Ao,
+}
+
+/// The samplers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum SamplerName {
+    /// Independent random numbers (PCG).
+    Independent,
+    /// Owen-scrambled Sobol points per pixel, padded four dimensions at a time.
+    #[default]
+    Sobol,
+}
+
+/// The reconstruction filters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FilterName {
+    /// Mean over the pixel.
+    Box,
+    /// Tent of radius one pixel.
+    Tent,
+    /// Gaussian with a standard deviation of half a pixel.
+    Gaussian,
+}
+
+impl FilterName {
+    fn description(self) -> FilterDescription {
+        match self {
+            Self::Box => FilterDescription::Box,
+            Self::Tent => FilterDescription::Tent { radius: 1.0 },
+            Self::Gaussian => FilterDescription::Gaussian { standard_deviation: 0.5 },
+        }
+    }
+}
+
+/// How to estimate, apart from the scene.
+#[derive(Clone, Debug)]
+pub struct RenderSettings {
+    /// What adds up the light.
+    pub estimator: EstimatorName,
+    /// How next event estimation and scattering are combined.
+    pub heuristic: AnyHeuristic,
+    /// How the emitter is chosen.
+    pub lights: LightSelection,
+    /// Where the random numbers come from.
+    pub sampler: SamplerName,
+    /// When to stop.
+    pub budget: Budget,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Number of threads; zero is one per core.
+    pub threads: usize,
+    /// Segments per path.
+    pub max_depth: u32,
+    /// Segments from which Russian roulette may end a path.
+    pub rr_depth: u32,
+    /// Reconstruction filter.
+    pub filter: Filter,
+    /// Distance of ambient occlusion, in units of the scene.
+    pub ao_distance: f32,
+}
+
+impl RenderSettings {
+    /// Path tracing with the scene's own filter and depth.
+    pub fn new(budget: Budget) -> Self {
+        Self {
+            estimator: EstimatorName::Path,
+            heuristic: AnyHeuristic::Power,
+            lights: LightSelection::Power,
+            sampler: SamplerName::Sobol,
+            budget,
+            seed: 0,
+            threads: 0,
+            max_depth: u32::MAX,
+            rr_depth: 5,
+            filter: Filter::BOX,
+            ao_distance: f32::INFINITY,
+        }
+    }
+}
+
+/// Renders with the estimator that the settings name.
+///
+/// # Errors
+/// If the image has no pixels or too many, or threads cannot be started.
+pub fn estimate<S: Scene + Sync>(
+    scene: &S,
+    settings: &RenderSettings,
+    observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
+) -> Result<Rendering, RenderError> {
+    match settings.sampler {
+        SamplerName::Independent => estimate_with(scene, settings, &Independent::new(settings.seed), observe),
+        SamplerName::Sobol => estimate_with(scene, settings, &OwenSobol::new(settings.seed), observe),
+    }
+}
+
+fn estimate_with<S: Scene + Sync>(
+    scene: &S,
+    settings: &RenderSettings,
+    samplers: &impl SamplerFamily,
+    observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
+) -> Result<Rendering, RenderError> {
+    let choice = AnyChoice::new(settings.lights, scene.emitters());
+    let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
+    let (filter, budget, threads) = (settings.filter, settings.budget, settings.threads);
+    let mut path = PathTracer {
+        heuristic: settings.heuristic,
+        choice: choice.clone(),
+        max_depth: settings.max_depth,
+        roulette,
+        first_event: FirstEvent::Any,
+    };
+    match settings.estimator {
+        EstimatorName::Path | EstimatorName::Direct => {
+            if settings.estimator == EstimatorName::Direct {
+                path.max_depth = path.max_depth.min(2);
+            }
+            let light = None::<&NoLightPaths>;
+            Job { scene, samplers, camera: &path, light, filter, budget, threads }.render(observe)
+        }
+        EstimatorName::Light => {
+            path.first_event = FirstEvent::SpecularOnly;
+            let light = LightTracer { choice, max_depth: settings.max_depth, roulette };
+            Job { scene, samplers, camera: &path, light: Some(&light), filter, budget, threads }.render(observe)
+        }
+        EstimatorName::Ao => {
+            let ao = AmbientOcclusion { distance: settings.ao_distance };
+            Job { scene, samplers, camera: &ao, light: None::<&NoLightPaths>, filter, budget, threads }.render(observe)
+        }
+    }
+}
+
+/// A finished image with the settings in its attributes.
+///
+/// # Errors
+/// As for [`estimate`].
+pub fn render_to_image(
+    scene: &ReferenceScene,
+    settings: &RenderSettings,
+    observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
+) -> Result<(LayeredImage, Rendering), RenderError> {
+    let rendering = estimate(scene, settings, observe)?;
+    let mut image = rendering.film.develop(rendering.light_paths);
+    annotate(&mut image, scene, settings, &rendering);
+    Ok((image, rendering))
+}
+
+fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderSettings, rendering: &Rendering) {
+    let name = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned()).unwrap_or_default();
+    let texts = [
+        ("scene", scene.name().to_owned()),
+        ("estimator", name(settings.estimator.to_possible_value())),
+        ("heuristic", name(settings.heuristic.to_possible_value())),
+        ("lights", name(settings.lights.to_possible_value())),
+        ("sampler", name(settings.sampler.to_possible_value())),
+        ("seed", settings.seed.to_string()),
+        ("maxDepth", if settings.max_depth == u32::MAX { "-1".to_owned() } else { settings.max_depth.to_string() }),
+        ("software", concat!("Lichtwerk ", env!("CARGO_PKG_VERSION")).to_owned()),
+    ];
+    for (key, text) in texts {
+        // Attributes are a service: one that does not fit is no reason to lose the image.
+        let _ = image.set_attribute(key, text);
+    }
+    let _ = image.set_attribute(scene_core::film::SAMPLES_PER_PIXEL, rendering.samples);
+}
+
+/// Makes the filter that a scene asks for.
+pub(super) fn filter_of(description: FilterDescription) -> Result<Filter, FilterError> {
+    match description {
+        FilterDescription::Box => Ok(Filter::BOX),
+        FilterDescription::Tent { radius } => Filter::tent(radius),
+        FilterDescription::Gaussian { standard_deviation } => Filter::gaussian(standard_deviation),
+    }
+}
+
+/// Loads, renders, writes.
+pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+    // Load and build the scene.
+    let start = Instant::now();
+    let mut description = load_description(&arguments.scene, &arguments.definitions)?;
+    if let Some([width, height]) = arguments.size {
+        (description.camera.width, description.camera.height) = (width, height);
+    }
+    let filter = filter_of(arguments.filter.map_or(description.filter, FilterName::description))?;
+    let samples = arguments.spp.or(description.samples_per_pixel.map(u64::from)).unwrap_or(64);
+    let max_depth = arguments.max_depth.or(description.max_depth).unwrap_or(u32::MAX);
+    let name = description.name.clone();
+    let scene = ReferenceScene::new(description).map_err(|error| format!("{}: {error}", arguments.scene))?;
+    for warning in scene.warnings() {
+        report(&format!("warning: {warning}"));
+    }
+    if scene.emitters().is_empty() && arguments.estimator != EstimatorName::Ao {
+        return Err(format!("{}: the scene has no light, so every pixel would be black", arguments.scene).into());
+    }
+    let load_seconds = start.elapsed().as_secs_f64();
+
+    // Find out now whether the files can be written.
+    let outputs = if arguments.out.is_empty() { default_outputs(&name)? } else { arguments.out.clone() };
+    for path in &outputs {
+        ImageFormat::of(path)?;
+        check_writable(path)?;
+    }
+    if let Some(path) = &arguments.stats {
+        check_writable(path)?;
+    }
+
+    // Render.
+    let settings = RenderSettings {
+        estimator: arguments.estimator,
+        heuristic: arguments.heuristic,
+        lights: arguments.lights,
+        sampler: arguments.sampler,
+        budget: arguments.time.map_or(Budget::Samples(samples), Budget::Seconds),
+        seed: arguments.seed,
+        threads: arguments.threads,
+        max_depth,
+        rr_depth: arguments.rr_depth,
+        filter,
+        ao_distance: arguments.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
+    };
+    let mut watch = Watch::new(arguments, &settings, &name);
+    let (image, rendering) = render_to_image(&scene, &settings, |pass| watch.observe(pass))?;
+    watch.finish(&image, &rendering);
+
+    // Write.
+    for path in &outputs {
+        save_image(path, &image, arguments.exposure)?;
+    }
+    if let Some(path) = &arguments.stats {
+        write_json(path, &stats(arguments, &rendering, load_seconds))?;
+    }
+    Ok(())
+}
+
+/// `out/NAME.exr` and `out/NAME.png`.
+fn default_outputs(name: &str) -> Result<Vec<PathBuf>, Failure> {
+    let folder = PathBuf::from("out");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("cannot create {}: {error}", folder.display()))?;
+    Ok(["exr", "png"].iter().map(|extension| folder.join(format!("{name}.{extension}"))).collect())
+}
+
+fn stats(arguments: &RenderArguments, rendering: &Rendering, load_seconds: f64) -> RenderStats {
+    let (width, height) = (rendering.film.width(), rendering.film.height());
+    RenderStats {
+        scene: arguments.scene.clone(),
+        estimator: arguments.estimator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
+        width,
+        height,
+        spp: rendering.samples,
+        threads: rendering.threads,
+        load_seconds,
+        render_seconds: rendering.seconds,
+        paths: rendering.samples * u64::from(width) * u64::from(height) + rendering.light_paths,
+        closest_hit_rays: rendering.rays.closest_hit,
+        visibility_rays: rendering.rays.visibility,
+        peak_bytes: peak_bytes(),
+    }
+}
+
+/// What looks at a rendering while it goes on: progress, viewer, Ctrl-C.
+struct Watch {
+    progress: Progress,
+    by_time: bool,
+    pixels: u64,
+    display: Display,
+    interrupt: Interrupt,
+}
+
+impl Watch {
+    fn new(arguments: &RenderArguments, settings: &RenderSettings, name: &str) -> Self {
+        let (progress, by_time) = match settings.budget {
+            Budget::Samples(samples) => (Progress::counting(samples, "samples per pixel"), false),
+            Budget::Seconds(seconds) => (Progress::timed(Duration::from_secs_f64(seconds), "samples per pixel"), true),
+        };
+        let display = arguments.display_server.as_deref().map_or_else(Display::none, |server| {
+            Display::connect(server, name).unwrap_or_else(|error| {
+                report(&format!("warning: {error}"));
+                Display::none()
+            })
+        });
+        // Another handler in the process keeps its Ctrl-C.
+        let interrupt = Interrupt::install().unwrap_or_else(|_| Interrupt::inactive());
+        Self { progress, by_time, pixels: 0, display, interrupt }
+    }
+
+    fn observe(&mut self, pass: Pass<'_>) -> ControlFlow<()> {
+        self.pixels = u64::from(pass.film.width()) * u64::from(pass.film.height());
+        let new = pass.samples - self.progress.done();
+        self.progress.add(new);
+        let _ = self.by_time;
+        if self.display.is_due() {
+            self.show(&pass.film.develop(pass.light_paths));
+        }
+        if self.interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn show(&mut self, image: &LayeredImage) {
+        if let Err(error) = self.display.update(image) {
+            self.progress.suspend(|| report(&format!("warning: {error}")));
+        }
+    }
+
+    fn finish(&mut self, image: &LayeredImage, rendering: &Rendering) {
+        self.progress.finish();
+        self.show(image);
+        let rejected = rendering.film.rejected_samples();
+        if rejected > 0 {
+            report(&format!("warning: {rejected} samples were not finite and count as black"));
+        }
+        if self.interrupt.is_requested() {
+            report(&format!("interrupted after {} samples per pixel; the image so far is kept", rendering.samples));
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! When a rendering stops, and how it is cut into passes.
+
+use std::ops::Range;
+
+/// What a rendering may spend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Budget {
+    /// Samples per pixel.
+    Samples(u64),
+    /// Seconds. At least one sample per pixel is taken.
+    Seconds(f64),
+}
+
+/// Passes should take about this long: short enough for progress and Ctrl-C, long enough to keep all threads busy.
+const PASS_SECONDS: f64 = 0.25;
+/// Number of samples per pass at most.
+const MAX_PASS: u64 = 64;
+
+/// Cuts a budget into passes.
+#[derive(Clone, Debug)]
+pub(super) struct Schedule {
+    budget: Budget,
+    done: u64,
+}
+
+impl Schedule {
+    pub(super) fn new(budget: Budget) -> Self {
+        Self { budget, done: 0 }
+    }
+
+    /// Samples per pixel so far, counting the pass that was handed out last.
+    pub(super) fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// The samples of the next pass, given the time since the start; nothing if the budget is spent.
+    pub(super) fn next_pass(&mut self, elapsed: f64) -> Option<Range<u64>> {
+        let rate = if elapsed > 0.0 { self.done as f64 / elapsed } else { 0.0 };
+        let wanted = ((rate * PASS_SECONDS) as u64).clamp(1, MAX_PASS);
+        let count = match self.budget {
+            Budget::Samples(total) => wanted.min(total.saturating_sub(self.done)),
+            Budget::Seconds(limit) => {
+                let remaining = rate * (limit - elapsed);
+                match self.done {
+                    0 => 1,
+                    // Stop at the pass that comes closest to the limit.
+                    _ if remaining < 0.5 => 0,
+                    _ => wanted.min(remaining.round() as u64).max(1),
+                }
+            }
+        };
+        let start = self.done;
+        self.done = self.done.saturating_add(count);
+        (count > 0).then_some(start..self.done)
+    }
+
+    /// Part of the budget that is spent.
+    pub(super) fn fraction(&self, elapsed: f64) -> f64 {
+        let fraction = match self.budget {
+            Budget::Samples(total) => self.done as f64 / total.max(1) as f64,
+            Budget::Seconds(limit) => elapsed / limit.max(f64::MIN_POSITIVE),
+        };
+        fraction.clamp(0.0, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_cover_the_samples_once() {
+        let mut schedule = Schedule::new(Budget::Samples(100));
+        let (mut next, mut elapsed) = (0, 0.0);
+        while let Some(pass) = schedule.next_pass(elapsed) {
+            assert_eq!(pass.start, next);
+            next = pass.end;
+            elapsed += 0.01 * (pass.end - pass.start) as f64;
+        }
+        assert_eq!((next, schedule.done()), (100, 100));
+        assert_eq!(schedule.fraction(0.0), 1.0);
+    }
+
+    #[test]
+    fn time_is_kept_to_within_a_pass() {
+        for limit in [0.0, 0.3, 5.0] {
+            let mut schedule = Schedule::new(Budget::Seconds(limit));
+            let mut elapsed = 0.0;
+            while let Some(pass) = schedule.next_pass(elapsed) {
+                elapsed += 0.02 * (pass.end - pass.start) as f64;
+            }
+            assert!(schedule.done() >= 1);
+            assert!(elapsed <= limit + 0.02, "{elapsed} for {limit}");
+            assert!(elapsed >= limit - 0.02, "{elapsed} for {limit}");
+        }
+    }
+
+    #[test]
+    fn no_samples_no_pass() {
+        assert_eq!(Schedule::new(Budget::Samples(0)).next_pass(0.0), None);
+    }
+}

@@ -1,0 +1,203 @@
+//! The loop over pixels, passes and threads.
+//!
+//! Every pixel sample has its own sampler, numbered by pixel and sample, and every pixel is summed by one thread in the
+//! order of its samples; light paths are numbered too and their splats are added in that order. So the image is the same
+//! bit for bit at any number of threads, and however the passes were cut.
+
+mod budget;
+
+use std::ops::{ControlFlow, Range};
+use std::time::{Duration, Instant};
+
+use qmc_sampling::{Sampler, SamplerFamily};
+use rayon::prelude::*;
+use scene_core::film::{Film, FilmError, FilmTile, Filter, SplatBuffer};
+use scene_core::{Counting, RayCounts, Scene, Sensor, Spectrum};
+
+pub use budget::Budget;
+use budget::Schedule;
+
+use crate::estimators::{CameraEstimator, LightEstimator, NoLightPaths};
+
+/// Side of the squares of pixels that threads take.
+const TILE_SIZE: u32 = 16;
+/// Number of light paths that one task traces.
+const LIGHT_PATHS_PER_TASK: u64 = 4096;
+/// Number of such tasks whose splats wait in memory at once.
+const LIGHT_TASKS_PER_WAVE: u64 = 64;
+/// The stream of the light paths' samplers, apart from those of the pixels.
+const LIGHT_STREAM: u64 = 1 << 40;
+
+/// What to render, and how.
+#[derive(Debug)]
+pub struct Job<'a, S, F, E, L = NoLightPaths> {
+    /// The scene.
+    pub scene: &'a S,
+    /// Numbers for each path.
+    pub samplers: &'a F,
+    /// Paths from the sensor, one per sample.
+    pub camera: &'a E,
+    /// Paths from the emitters, as many as there are pixels for each sample per pixel.
+    pub light: Option<&'a L>,
+    /// Reconstruction filter.
+    pub filter: Filter,
+    /// When to stop.
+    pub budget: Budget,
+    /// Number of threads; zero is one per core.
+    pub threads: usize,
+}
+
+/// How far a rendering is.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// The image so far.
+    pub film: &'a Film,
+    /// Samples per pixel so far.
+    pub samples: u64,
+    /// Light paths so far.
+    pub light_paths: u64,
+    /// Part of the budget that is spent, from 0 to 1.
+    pub fraction: f64,
+    /// Time since the start.
+    pub elapsed: Duration,
+}
+
+/// A finished (or interrupted) rendering.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The image.
+    pub film: Film,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Light paths.
+    pub light_paths: u64,
+    /// Rays traced.
+    pub rays: RayCounts,
+    /// Time spent in rendering.
+    pub seconds: f64,
+    /// Number of threads that rendered.
+    pub threads: usize,
+}
+
+/// Why a rendering could not start.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The image's size.
+    #[error(transparent)]
+    Film(#[from] FilmError),
+    /// The threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+impl<S, F, E, L> Job<'_, S, F, E, L>
+where
+    S: Scene + Sync,
+    F: SamplerFamily,
+    E: CameraEstimator,
+    L: LightEstimator,
+{
+    /// Renders pass by pass until the budget is spent or `observe` breaks.
+    ///
+    /// # Errors
+    /// If the image has no pixels or too many, or threads cannot be started.
+    pub fn render(&self, mut observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send) -> Result<Rendering, RenderError> {
+        let [width, height] = self.scene.sensor().resolution();
+        let mut film = Film::new(width, height)?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .map_err(|error| RenderError::Threads { threads: self.threads, reason: error.to_string() })?;
+        let start = Instant::now();
+        let mut schedule = Schedule::new(self.budget);
+        let mut rays = RayCounts::default();
+        let pixels = u64::from(width) * u64::from(height);
+        pool.install(|| {
+            while let Some(samples) = schedule.next_pass(start.elapsed().as_secs_f64()) {
+                rays += self.camera_pass(&mut film, samples.clone());
+                if let Some(light) = self.light {
+                    rays += self.light_pass(light, &mut film, samples.start * pixels..samples.end * pixels)?;
+                }
+                let elapsed = start.elapsed();
+                let progress = Progress {
+                    film: &film,
+                    samples: samples.end,
+                    light_paths: if self.light.is_some() { samples.end * pixels } else { 0 },
+                    fraction: schedule.fraction(elapsed.as_secs_f64()),
+                    elapsed,
+                };
+                if observe(progress).is_break() {
+                    break;
+                }
+            }
+            Ok::<(), RenderError>(())
+        })?;
+        let samples = schedule.done();
+        let light_paths = if self.light.is_some() { samples * pixels } else { 0 };
+        let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
+        Ok(Rendering { film, samples, light_paths, rays, seconds, threads })
+    }
+
+    /// Adds the given samples to every pixel.
+    fn camera_pass(&self, film: &mut Film, samples: Range<u64>) -> RayCounts {
+        let width = film.width();
+        let tiles: Vec<FilmTile<'_>> = film.tiles_mut(TILE_SIZE);
+        tiles.into_par_iter().map(|mut tile| self.camera_tile(&mut tile, width, samples.clone())).sum()
+    }
+
+    fn camera_tile(&self, tile: &mut FilmTile<'_>, width: u32, samples: Range<u64>) -> RayCounts {
+        let scene = Counting::new(self.scene);
+        for ([x, y], pixel) in tile.pixels_mut() {
+            let stream = u64::from(y) * u64::from(width) + u64::from(x);
+            for index in samples.clone() {
+                let mut sampler = self.samplers.sampler(stream, index);
+                let [dx, dy] = self.filter.sample(sampler.next_2d());
+                let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
+                let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
+                let (radiance, first_hit) = self.camera.radiance(&scene, ray.ray, &mut sampler);
+                pixel.add((radiance * ray.weight).to_rgb());
+                if let Some(hit) = first_hit {
+                    pixel.add_aov(hit.albedo, hit.normal, hit.depth);
+                }
+            }
+        }
+        scene.counts()
+    }
+
+    /// Traces the light paths with the given numbers, wave by wave, and adds their splats in order.
+    fn light_pass(&self, light: &L, film: &mut Film, paths: Range<u64>) -> Result<RayCounts, FilmError> {
+        let mut rays = RayCounts::default();
+        let mut first = paths.start;
+        while first < paths.end {
+            let end = paths.end.min(first + LIGHT_PATHS_PER_TASK * LIGHT_TASKS_PER_WAVE);
+            let starts: Vec<u64> = (first..end).step_by(LIGHT_PATHS_PER_TASK as usize).collect();
+            let tasks: Vec<(SplatBuffer, RayCounts)> = starts
+                .into_par_iter()
+                .map(|start| self.light_task(light, start..end.min(start + LIGHT_PATHS_PER_TASK)))
+                .collect();
+            for (splats, counts) in &tasks {
+                film.add_splats(splats)?;
+                rays += *counts;
+            }
+            first = end;
+        }
+        Ok(rays)
+    }
+
+    fn light_task(&self, light: &L, paths: Range<u64>) -> (SplatBuffer, RayCounts) {
+        let scene = Counting::new(self.scene);
+        let [width, height] = scene.sensor().resolution();
+        let mut splats = SplatBuffer::new(width, height, self.filter);
+        for index in paths {
+            let mut sampler = self.samplers.sampler(LIGHT_STREAM, index);
+            light.trace(&scene, &mut sampler, |raster, value| splats.add(raster, value.to_rgb()));
+        }
+        (splats, scene.counts())
+    }
+}
