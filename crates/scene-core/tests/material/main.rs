@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod cases;
+mod chi_square;
 mod laws;
 mod mitsuba;
 mod quadrature;
