@@ -101,7 +101,8 @@ impl<'m> Bsdf<'m> {
 
     /// The directional albedo, or a cheap estimate, in `[0, 1]`.
     pub fn albedo(&self, wo: Vec3A) -> Rgb {
-        let (lobe, side) = self.side(wo);
+        let mut slot = None;
+        let (lobe, side) = self.side(wo, &mut slot);
         let wo = wo.with_z(wo.z * side);
         let opaque = if lobe.is_one_sided() && wo.z <= 0.0 { Rgb::ZERO } else { lobe.albedo(wo).clamp(0.0, 1.0) };
         opaque * self.opacity + Rgb::splat(1.0 - self.opacity)
@@ -125,17 +126,21 @@ impl<'m> Bsdf<'m> {
         self.opacity == 1.0 && !self.evaluate_only && self.back.is_none()
     }
 
-    /// What `wo` sees, and the factor for z that brings `wo` to its front.
+    /// What `wo` sees, and the factor for z that brings `wo` to its front. `slot` keeps a back side that had to be looked up.
     #[inline]
-    fn side(&self, wo: Vec3A) -> (Lobe<'m>, f32) {
+    fn side<'a>(&'a self, wo: Vec3A, slot: &'a mut Option<Lobe<'m>>) -> (&'a Lobe<'m>, f32) {
         if wo.z >= 0.0 || !self.two_sided {
-            return (self.lobe, 1.0);
+            return (&self.lobe, 1.0);
         }
-        (self.back.map_or(self.lobe, |back| back.resolve(self.uv)), -1.0)
+        match self.back {
+            Some(back) => (slot.insert(back.resolve(self.uv)), -1.0),
+            None => (&self.lobe, -1.0),
+        }
     }
 
     fn eval_pdf_general(&self, wo: Vec3A, wi: Vec3A, mode: TransportMode) -> (Rgb, f32) {
-        let (lobe, side) = self.side(wo);
+        let mut slot = None;
+        let (lobe, side) = self.side(wo, &mut slot);
         let (wo, wi) = (wo.with_z(wo.z * side), wi.with_z(wi.z * side));
         let (value, pdf) = lobe.eval_pdf(wo, wi, mode);
         if self.evaluate_only {
@@ -153,7 +158,8 @@ impl<'m> Bsdf<'m> {
             return Some(BsdfSample::specular(-wo, Rgb::ONE, 1.0));
         }
         u[0] = (u[0] / self.opacity).min(ONE_MINUS_EPSILON);
-        let (lobe, side) = self.side(wo);
+        let mut slot = None;
+        let (lobe, side) = self.side(wo, &mut slot);
         let wo = wo.with_z(wo.z * side);
         let mut sample = if self.evaluate_only {
             if wo.z == 0.0 || (lobe.is_one_sided() && wo.z < 0.0) {

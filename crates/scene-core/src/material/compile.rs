@@ -215,11 +215,25 @@ impl CompiledMaterial {
     }
 
     /// The frame in which directions are handed to the [`Bsdf`]: z is the shading normal after bump and normal mapping,
-    /// x lies along `dpdu`.
+    /// x lies along `dpdu`. It does not depend on any direction, as bidirectional methods need it.
+    ///
+    /// Where light crosses the original but not the perturbed surface, or the other way around, the caller drops it.
     #[inline]
     pub fn shading_frame(&self, input: &ShadingInput) -> Frame {
         let normal = self.normals.iter().fold(input.shading_normal, |normal, map| map.perturb(normal, input));
         Frame::from_z_and_tangent(normal, input.dpdu)
+    }
+
+    /// As [`shading_frame`](Self::shading_frame), but normals that turn away from `wo` are mirrored at the one they replace, so
+    /// that bumps seen at grazing angles are not black: what Mitsuba 3.9 calls `flip_invalid_normals` and does by default.
+    ///
+    /// The frame depends on `wo`, so that paths do not see the same surface from both ends.
+    pub fn shading_frame_towards(&self, input: &ShadingInput, wo: Vec3A) -> Frame {
+        let turn = |old: Vec3A, new: Vec3A| {
+            if wo.dot(old) * wo.dot(new) < 0.0 { old * (2.0 * old.dot(new)) - new } else { new }
+        };
+        let perturb = |normal: Vec3A, map: &NormalModifier| turn(normal, map.perturb(normal, input));
+        Frame::from_z_and_tangent(self.normals.iter().fold(input.shading_normal, perturb), input.dpdu)
     }
 
     /// Whether it has a component that is not a Dirac delta.

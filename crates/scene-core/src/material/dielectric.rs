@@ -126,7 +126,7 @@ impl RoughDielectric {
         }
         let h = wo + wi * eta;
         let length2 = h.length_squared();
-        if !(length2 > 0.0) || h.z == 0.0 {
+        if length2 == 0.0 || h.z == 0.0 {
             return (Rgb::ZERO, 0.0);
         }
         let m = h * (1.0f32.copysign(h.z) / length2.sqrt());

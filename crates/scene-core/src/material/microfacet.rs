@@ -115,7 +115,7 @@ impl Microfacet {
 
     /// A normal that is visible from `wo` (`wo_z > 0`), of density `D(m) G1(wo) (wo.m)+ / wo_z`.
     ///
-    /// Mirroring `u[1]` at 1/2 mirrors the normal at the plane of `wo` and the macroscopic normal.
+    /// If `wo_y = 0`, replacing `u[1]` by `1 - u[1]` mirrors the normal at the plane `y = 0`.
     #[inline]
     pub(super) fn sample_visible(&self, wo: Vec3A, u: [f32; 2]) -> Vec3A {
         match self.distribution {
@@ -129,15 +129,12 @@ impl Microfacet {
     fn sample_visible_ggx(&self, wo: Vec3A, u: [f32; 2]) -> Vec3A {
         // Warp to the configuration of a hemisphere.
         let stretched = Vec3A::new(wo.x * self.alpha[0], wo.y * self.alpha[1], wo.z).normalize();
-        // Sample a spherical cap, measured from the azimuth of the direction.
+        // Sample a spherical cap.
         let z = (1.0 - u[0]) * (1.0 + stretched.z) - stretched.z;
         let r = (1.0 - z * z).max(0.0).sqrt();
         let (sin, cos) = sin_cos_turn(u[1]);
-        let azimuth = azimuth(stretched);
-        let x = r * (cos * azimuth[0] - sin * azimuth[1]);
-        let y = r * (cos * azimuth[1] + sin * azimuth[0]);
         // The half vector is the normal of the hemisphere; unwarp it.
-        let h = Vec3A::new(x, y, z) + stretched;
+        let h = Vec3A::new(r * cos, r * sin, z) + stretched;
         Vec3A::new(h.x * self.alpha[0], h.y * self.alpha[1], h.z.max(0.0)).try_normalize().unwrap_or(Vec3A::Z)
     }
 
@@ -185,11 +182,12 @@ fn visible_slope(cos: f32, u: f32) -> f32 {
         }
         let step = error / (cos - slope * sin).max(1e-6);
         let next = y - step;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - y).abs() < 2e-7 {
+        // Convergence is quadratic: after a step of this size in proportion to the tail, it is done.
+        if step.abs() < 1e-3 * (1.0 - y.abs()) + 1e-7 {
+            y = next.clamp(low, high);
             break;
         }
-        y = next;
+        y = if next > low && next < high { next } else { 0.5 * (low + high) };
     }
     erf_inverse(y)
 }

@@ -26,6 +26,7 @@ mod plastic;
 mod quadrature;
 mod rough_plastic;
 mod surface;
+mod validate;
 mod warp;
 
 pub use bsdf::{Bsdf, BsdfSample};

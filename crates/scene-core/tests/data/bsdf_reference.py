@@ -2,7 +2,7 @@
 
     python bsdf_reference.py > bsdf_reference.csv
 
-Mitsuba's `si.wi` is our `wo`, its `wo` our `wi`. The cases have the same names in `materials/cases.rs`.
+Mitsuba's `si.wi` is our `wo`, its `wo` our `wi`. The cases have the same names in `material/cases.rs`.
 """
 import numpy as np
 import mitsuba as mi
