@@ -23,14 +23,15 @@ use crate::hash::combine;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Independent {
-    seed: u64,
+    /// Hash of the seed.
+    key: u64,
 }
 
 impl Independent {
     /// The family of a seed. Any seed is as good as any other.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self { seed }
+        Self { key: combine(0, seed) }
     }
 }
 
@@ -39,7 +40,7 @@ impl SamplerFamily for Independent {
 
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> IndependentSampler {
-        IndependentSampler::from_key(combine(combine(combine(0, self.seed), stream), index))
+        IndependentSampler::from_key(combine(combine(self.key, stream), index))
     }
 }
 
