@@ -5,7 +5,7 @@ use crate::hash::{combine, mix64};
 use crate::image::{ImageSequence, SobolImage};
 use crate::scramble::{laine_karras, owen_hash_u32};
 use crate::sequences::SequenceError;
-use crate::sobol::{DIMENSIONS, GROUPS, INDEX_BITS, reversed_group, sobol_bits, sobol_bits_u32};
+use crate::sobol::{DIMENSIONS, reversed_group, sobol_bits, sobol_bits_u32};
 
 /// One Owen-scrambled Sobol sequence through all the pixels of an image.
 ///
@@ -15,7 +15,7 @@ use crate::sobol::{DIMENSIONS, GROUPS, INDEX_BITS, reversed_group, sobol_bits, s
 /// The digits that choose the pixel are not scrambled, those below and all other dimensions are.
 ///
 /// Forks and dimensions from 1024 on restart at dimension 0, with the index shuffled and other random digits.
-/// Cost: per four numbers eight lookups of 16 bytes; more for indices above 2^32 and dimensions from 256 on.
+/// Cost: per number eight lookups of four bytes, or per four eight of 16; more for indices above 2^32.
 ///
 /// ```
 /// use qmc_sampling::{Sampler, SamplerFamily, sampler::GlobalSobol};
@@ -51,7 +51,7 @@ impl GlobalSobol {
     #[inline]
     #[must_use]
     pub fn at(&self, index: u64) -> GlobalSobolSampler {
-        GlobalSobolSampler::new(combine(0, self.seed), index & ((1 << INDEX_BITS) - 1), self.image.log2_side())
+        GlobalSobolSampler { pattern: combine(0, self.seed), index, dimension: 0, pixel_digits: self.image.log2_side() }
     }
 }
 
@@ -67,96 +67,80 @@ impl SamplerFamily for GlobalSobol {
     }
 }
 
-/// The sampler of [`GlobalSobol`], 32 bytes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The sampler of [`GlobalSobol`], 24 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GlobalSobolSampler {
-    /// Hash of the seed and the forks; the five low bits say how many digits of dimensions 0 and 1 choose the pixel: none
-    /// in forks.
+    /// Hash of the seed and the forks.
     pattern: u64,
-    /// The index in the low 52 bits, above them the next dimension.
-    place: u64,
-    /// The group of four that the next dimension lies in, valid unless that is a multiple of four.
-    group: [f32; 4],
+    index: u64,
+    dimension: u32,
+    /// How many digits of dimensions 0 and 1 choose the pixel: none in forks.
+    pixel_digits: u32,
 }
 
 impl GlobalSobolSampler {
+    /// The random number of a group of four dimensions.
     #[inline]
-    const fn new(pattern: u64, index: u64, pixel_digits: u32) -> Self {
-        Self { pattern: (pattern & !31) | pixel_digits as u64, place: index, group: [0.0; 4] }
+    fn key(&self, group: u32) -> u64 {
+        mix64(self.pattern.wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15)))
     }
 
+    /// A coordinate of the point.
     #[inline]
-    fn index(&self) -> u64 {
-        self.place & ((1 << INDEX_BITS) - 1)
-    }
-
-    #[inline]
-    fn dimension(&self) -> u32 {
-        (self.place >> INDEX_BITS) as u32
-    }
-
-    #[inline]
-    fn pixel_digits(&self) -> u32 {
-        (self.pattern & 31) as u32
-    }
-
-    #[inline]
-    fn set_dimension(&mut self, dimension: u32) {
-        self.place = self.index() | (u64::from(dimension) << INDEX_BITS);
+    fn draw(&self, dimension: u32) -> f32 {
+        let seed = (self.key(dimension / 4).wrapping_mul(SEED_MULTIPLIERS[(dimension % 4) as usize]) >> 32) as u32;
+        let bits = sobol_bits_u32(self.index, dimension);
+        f32_from_bits(if dimension < 2 { self.place(bits, seed) } else { owen_hash_u32(bits, seed) })
     }
 
     /// Scrambles the digits below those that choose the pixel.
     #[inline]
-    fn within_pixel(&self, bits: u32, seed: u32) -> u32 {
-        let pixel = bits >> (32 - self.pixel_digits());
-        owen_hash_u32(bits << self.pixel_digits(), mix64((u64::from(pixel) << 32) | u64::from(seed)) as u32)
-    }
-
-    /// The four numbers of a group.
-    #[inline]
-    fn draw(&self, group: u32) -> [f32; 4] {
-        let key = mix64(self.pattern.wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-        let seeds = SEED_MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32);
-        let point = self.point(group);
-        let mut scrambled = [0; 4];
-        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(seeds) {
-            *s = laine_karras(p, seed).reverse_bits();
+    fn place(&self, bits: u32, seed: u32) -> u32 {
+        if self.pixel_digits == 0 {
+            return owen_hash_u32(bits, seed);
         }
-        if group == 0 && self.pixel_digits() > 0 {
-            for k in 0..2 {
-                scrambled[k] = self.within_pixel(point[k].reverse_bits(), seeds[k]);
-            }
-        }
-        scrambled.map(f32_from_bits)
-    }
-
-    /// Four coordinates of the point, bit-reversed.
-    #[inline]
-    fn point(&self, group: u32) -> [u32; 4] {
-        let index = self.index();
-        if group >= GROUPS {
-            return [0, 1, 2, 3].map(|lane| sobol_bits_u32(index, 4 * group + lane).reverse_bits());
-        }
-        let mut point = reversed_group(index as u32, group);
-        if index >> 32 != 0 {
-            for (dimension, p) in (4 * group..).zip(&mut point) {
-                *p ^= ((sobol_bits(index >> 32 << 32, dimension) >> 32) as u32).reverse_bits();
-            }
-        }
-        point
+        let pixel = bits >> (32 - self.pixel_digits);
+        owen_hash_u32(bits << self.pixel_digits, mix64((u64::from(pixel) << 32) | u64::from(seed)) as u32)
     }
 
     /// The next four numbers. They start at a multiple of four dimensions, leaving out what is before.
     #[inline]
     pub fn next_4d(&mut self) -> [f32; 4] {
-        let mut group = self.dimension().div_ceil(4);
-        if 4 * group >= DIMENSIONS {
-            *self = self.fork(u32::MAX);
-            group = 0;
+        let group = self.dimension.div_ceil(4);
+        if group >= 64 {
+            let [a, b] = self.next_2d();
+            let [c, d] = self.next_2d();
+            return [a, b, c, d];
         }
-        self.set_dimension(4 * (group + 1));
-        self.draw(group)
+        self.dimension = 4 * (group + 1);
+        let key = self.key(group);
+        let seeds = SEED_MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32);
+        let mut point = reversed_group(self.index as u32, group);
+        let high = self.index >> 32;
+        if high != 0 {
+            for (dimension, p) in (4 * group..).zip(&mut point) {
+                *p ^= ((sobol_bits(high << 32, dimension) >> 32) as u32).reverse_bits();
+            }
+        }
+        let mut scrambled = [0; 4];
+        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(seeds) {
+            *s = laine_karras(p, seed).reverse_bits();
+        }
+        if group == 0 && self.pixel_digits > 0 {
+            for k in 0..2 {
+                scrambled[k] = self.place(point[k].reverse_bits(), seeds[k]);
+            }
+        }
+        scrambled.map(f32_from_bits)
+    }
+
+    /// Makes room for `n` more dimensions.
+    #[inline]
+    fn reserve(&mut self, n: u32) {
+        if self.dimension + n > DIMENSIONS {
+            *self = self.fork(u32::MAX);
+        }
     }
 }
 
@@ -167,26 +151,24 @@ const SEED_MULTIPLIERS: [u64; 4] =
 impl Sampler for GlobalSobolSampler {
     #[inline]
     fn next_1d(&mut self) -> f32 {
-        if self.dimension() >= DIMENSIONS {
-            *self = self.fork(u32::MAX);
-        }
-        let dimension = self.dimension();
-        if dimension.is_multiple_of(4) {
-            self.group = self.draw(dimension / 4);
-        }
-        self.set_dimension(dimension + 1);
-        self.group[(dimension % 4) as usize]
+        self.reserve(1);
+        let x = self.draw(self.dimension);
+        self.dimension += 1;
+        x
     }
 
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
-        [self.next_1d(), self.next_1d()]
+        self.reserve(2);
+        let pair = [self.draw(self.dimension), self.draw(self.dimension + 1)];
+        self.dimension += 2;
+        pair
     }
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
         let pattern = combine(self.pattern, u64::from(domain));
-        Self::new(pattern, shuffle(self.index(), mix64(!pattern)), 0)
+        Self { pattern, index: shuffle(self.index, mix64(!pattern)), dimension: 0, pixel_digits: 0 }
     }
 }
 

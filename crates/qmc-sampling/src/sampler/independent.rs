@@ -23,15 +23,14 @@ use crate::hash::combine;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Independent {
-    /// Hash of the seed.
-    key: u64,
+    seed: u64,
 }
 
 impl Independent {
     /// The family of a seed. Any seed is as good as any other.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self { key: combine(0, seed) }
+        Self { seed }
     }
 }
 
@@ -40,7 +39,7 @@ impl SamplerFamily for Independent {
 
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> IndependentSampler {
-        IndependentSampler::from_key(combine(combine(self.key, stream), index))
+        IndependentSampler::from_key(combine(combine(combine(0, self.seed), stream), index))
     }
 }
 

@@ -34,15 +34,14 @@ use crate::sobol::reversed_4d;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OwenSobol {
-    /// Hash of the seed.
-    key: u64,
+    seed: u64,
 }
 
 impl OwenSobol {
     /// The family of a seed: one randomisation.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self { key: combine(0, seed) }
+        Self { seed }
     }
 }
 
@@ -51,7 +50,7 @@ impl SamplerFamily for OwenSobol {
 
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> OwenSobolSampler {
-        OwenSobolSampler::at(combine(self.key, stream), index)
+        OwenSobolSampler::at(combine(combine(0, self.seed), stream), index)
     }
 }
 
@@ -77,8 +76,8 @@ impl OwenSobolSampler {
     /// Point `index` of a pattern; its high bits go into the pattern.
     #[inline]
     const fn at(pattern: u64, index: u64) -> Self {
-        let pattern = pattern.wrapping_add((index >> 32).wrapping_mul(0xd134_2543_de82_ef95));
-        Self::new(pattern, (index as u32).reverse_bits())
+        let high = index >> 32;
+        Self::new(if high == 0 { pattern } else { combine(pattern, high) }, (index as u32).reverse_bits())
     }
 
     /// The next four numbers, stratified together. Leaves out what remains of a group begun.

@@ -8,7 +8,7 @@ mod tables;
 pub use directions::{DIMENSIONS, INDEX_BITS};
 pub use sequence::{Randomisation, Sobol};
 
-pub(crate) use tables::{GROUPS, reversed_4d, reversed_group};
+pub(crate) use tables::{reversed_4d, reversed_group};
 
 /// Coordinate `dimension` of point `index` as a binary fraction: the first digit is the highest bit, 52 digits count.
 ///

@@ -55,14 +55,11 @@ pub(crate) fn reversed_4d(index_reversed: u32) -> [u32; 4] {
 /// The number of dimensions that have tables.
 pub(crate) const DIMENSIONS: u32 = 256;
 
-/// The number of groups of four that have tables.
-pub(crate) const GROUPS: u32 = DIMENSIONS / 4;
-
 /// For each nibble of the index and each value of it, what it contributes to four coordinates, bit-reversed.
 type NibbleTables = [[[u32; 4]; 16]; 8];
 
 /// The tables of dimensions `4 g` to `4 g + 3`. Nibbles rather than bytes: a path touches many groups, of 2 KiB each.
-static GROUP_TABLES: [NibbleTables; DIMENSIONS as usize / 4] = {
+static GROUPS: [NibbleTables; DIMENSIONS as usize / 4] = {
     let mut groups = [[[[0; 4]; 16]; 8]; DIMENSIONS as usize / 4];
     let mut dimension = 0;
     while dimension < DIMENSIONS as usize {
@@ -89,7 +86,7 @@ static GROUP_TABLES: [NibbleTables; DIMENSIONS as usize / 4] = {
 pub(crate) fn reversed_group(index: u32, group: u32) -> [u32; 4] {
     let mut sum = [0; 4];
     let mut rest = index;
-    for table in &GROUP_TABLES[group as usize] {
+    for table in &GROUPS[group as usize] {
         let entry = &table[(rest & 15) as usize];
         for (s, e) in sum.iter_mut().zip(entry) {
             *s ^= e;
@@ -105,7 +102,7 @@ pub(crate) fn product(index: u32, dimension: u32) -> u32 {
     let (group, lane) = ((dimension / 4) as usize, (dimension % 4) as usize);
     let mut sum = 0;
     let mut rest = index;
-    for table in &GROUP_TABLES[group] {
+    for table in &GROUPS[group] {
         sum ^= table[(rest & 15) as usize][lane];
         rest >>= 4;
     }
