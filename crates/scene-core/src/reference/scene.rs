@@ -71,6 +71,10 @@ pub enum SceneError {
     Camera(#[from] CameraError),
 }
 
+/// Meshes that are placed several times are copied into the world up to this number of triangles in all: that is faster
+/// to trace than a second level. Larger ones share their triangles.
+const MAX_COPIED_TRIANGLES: u64 = 50_000;
+
 /// What a surface is made of.
 #[derive(Clone, Copy, Debug)]
 struct Surface {
@@ -95,7 +99,7 @@ pub struct ReferenceScene {
 }
 
 impl ReferenceScene {
-    /// Builds the scene: moves single meshes into the world, builds the hierarchies, compiles the materials and makes
+    /// Builds the scene: moves meshes that are single or small into the world, builds the hierarchies, compiles the materials and makes
     /// the emitters, those of surfaces first, in the order of the description.
     ///
     /// # Errors
@@ -297,7 +301,8 @@ impl<'d> Builder<'d> {
         if !to_world.is_finite() {
             return Err(transform_error(index, to_world, "is not finite"));
         }
-        let (placed, placed_to_world) = if self.uses[shape as usize] == 1 {
+        let copies = u64::from(self.uses[shape as usize]) * mesh.len() as u64;
+        let (placed, placed_to_world) = if self.uses[shape as usize] == 1 || copies <= MAX_COPIED_TRIANGLES {
             let moved = if to_world == Affine3A::IDENTITY { mesh.clone() } else { Arc::new(mesh.transformed(&to_world)) };
             self.meshes.push(WorldMesh { mesh: moved.clone(), surface });
             (moved, Affine3A::IDENTITY)

@@ -90,16 +90,20 @@ impl RadianceImage {
         ((self.to_world * local).normalize_or(Vec3A::Y), sin_theta)
     }
 
-    /// Integral over the sphere, by the trapezoidal rule of the bilinear grid with exact strips.
+    /// Integral over the sphere, exactly: each row of nodes weighs the integral of its hat function times the sine.
     fn integral(&self) -> Rgb {
+        use core::f64::consts::{PI, TAU};
+        let step = PI / (self.height - 1) as f64;
         let mut total = [0.0f64; 3];
         for j in 0..self.height - 1 {
-            let edge = |j: usize| (core::f64::consts::PI * j as f64 / (self.height - 1) as f64).cos();
-            let solid_angle = (edge(j) - edge(j + 1)) * core::f64::consts::TAU / self.width as f64;
-            for i in 0..self.width {
-                for row in [j, j + 1] {
-                    let rgb = self.nodes[row * self.width + i].to_array();
-                    (0..3).for_each(|c| total[c] += 0.5 * solid_angle * f64::from(rgb[c]));
+            let ((sin_0, cos_0), (sin_1, cos_1)) = ((step * j as f64).sin_cos(), (step * (j + 1) as f64).sin_cos());
+            // integral over the strip of (theta - theta_j) / step sin(theta), and what remains of the strip.
+            let lower = (sin_1 - sin_0) / step - cos_1;
+            let upper = cos_0 - cos_1 - lower;
+            for (row, weight) in [(j, upper), (j + 1, lower)] {
+                let weight = weight * TAU / self.width as f64;
+                for node in &self.nodes[row * self.width..(row + 1) * self.width] {
+                    (0..3).for_each(|c| total[c] += weight * f64::from(node[c]));
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Surfaces and rays.
 
 mod analytic;
+mod hierarchy;
 mod mesh;
 mod triangle;
 mod triangle_bvh;

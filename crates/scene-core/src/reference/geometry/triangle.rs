@@ -1,6 +1,6 @@
 //! The intersection of a ray and a triangle, without gaps between neighbours.
 
-use glam::Vec3A;
+use glam::{Vec3A, Vec3Swizzles};
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,48 +13,78 @@ pub(crate) struct TriangleHit {
     pub v: f32,
 }
 
-/// Intersects with the triangle `corners`, for ray parameters in `(0, max_t)`.
-///
-/// The edge functions are Plücker products `(e x (a + b)) . d` of the ray with each edge `a b`, relative to the
-/// ray's origin. For the edge shared by two triangles they are computed from the same corners: the edge vector
-/// changes sign, the sum of the corners does not, and floating point negation is exact, so the two triangles see
-/// exactly opposite values, and no ray passes between them (watertight in the sense of Woop, Benthin, Wald 2013).
-///
-/// Source: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher, "3D rasterization: a bridge between
-/// rasterization and ray casting", Graphics Interface 2012; the form used by Embree's robust mode.
-#[inline(always)]
-pub(crate) fn intersect_triangle(
+/// A triangle with its corners in lanes: `x` holds the three x coordinates, and so on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TriangleLanes {
+    x: Vec3A,
+    y: Vec3A,
+    z: Vec3A,
+}
+
+impl TriangleLanes {
+    pub(crate) fn new(&[a, b, c]: &[Vec3A; 3]) -> Self {
+        Self { x: Vec3A::new(a.x, b.x, c.x), y: Vec3A::new(a.y, b.y, c.y), z: Vec3A::new(a.z, b.z, c.z) }
+    }
+
+    /// Intersects, for ray parameters in `(0, max_t)`.
+    ///
+    /// The edge functions are Plücker products `((b - a) x (a + b)) . d` of the ray with each edge `a b`, relative to the
+    /// ray's origin, all three at once. For the edge shared by two triangles they are computed from the same corners: the
+    /// edge vector changes sign, the sum of the corners does not, and floating point negation is exact, so the two triangles
+    /// see exactly opposite values, and no ray passes between them (watertight in the sense of Woop, Benthin, Wald 2013).
+    /// The ray parameter is interpolated from the corners' projections on the ray.
+    ///
+    /// Source: Davidovič, Engelhardt, Georgiev, Slusallek, Dachsbacher, "3D rasterization: a bridge between rasterization and
+    /// ray casting", Graphics Interface 2012; the form used by Embree's robust mode.
+    #[inline(always)]
+    pub(crate) fn intersect(&self, ray: &TriangleRay, max_t: f32) -> Option<TriangleHit> {
+        let (x, y, z) = (self.x - ray.origin.x, self.y - ray.origin.y, self.z - ray.origin.z);
+        let (next_x, next_y, next_z) = (x.yzx(), y.yzx(), z.yzx());
+        let (ex, ey, ez) = (next_x - x, next_y - y, next_z - z);
+        let (sx, sy, sz) = (next_x + x, next_y + y, next_z + z);
+        let d = ray.direction;
+        let edges = (ey * sz - ez * sy) * d.x + (ez * sx - ex * sz) * d.y + (ex * sy - ey * sx) * d.z;
+        if edges.cmplt(Vec3A::ZERO).any() && edges.cmpgt(Vec3A::ZERO).any() {
+            return None;
+        }
+        // The function of the edge opposite to a corner is its weight.
+        let weights = edges.yzx();
+        let scale = 1.0 / (weights.x + weights.y + weights.z);
+        let along = x * d.x + y * d.y + z * d.z;
+        let t = weights.dot(along) * scale * ray.inverse_length_squared;
+        // NaN (a ray in the triangle's plane, a triangle without area) compares false.
+        if t > 0.0 && t < max_t {
+            Some(TriangleHit { t, u: weights.y * scale, v: weights.z * scale })
+        } else {
+            None
+        }
+    }
+}
+
+/// What of a ray the test of triangles needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TriangleRay {
     origin: Vec3A,
     direction: Vec3A,
-    max_t: f32,
-    corners: &[Vec3A; 3],
-) -> Option<TriangleHit> {
-    let a = corners[0] - origin;
-    let b = corners[1] - origin;
-    let c = corners[2] - origin;
-    let (e0, e1, e2) = (c - a, a - b, b - c);
-    let u = e0.cross(c + a).dot(direction);
-    let v = e1.cross(a + b).dot(direction);
-    let w = e2.cross(b + c).dot(direction);
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-        return None;
+    inverse_length_squared: f32,
+}
+
+impl TriangleRay {
+    /// The direction need not have unit length.
+    #[inline(always)]
+    pub(crate) fn new(origin: Vec3A, direction: Vec3A) -> Self {
+        Self { origin, direction, inverse_length_squared: 1.0 / direction.length_squared() }
     }
-    let normal = e0.cross(e1);
-    let denominator = normal.dot(direction);
-    let t = normal.dot(a) / denominator;
-    // NaN (a ray in the triangle's plane, a triangle without area) compares false.
-    if !(t > 0.0 && t < max_t) {
-        return None;
-    }
-    let scale = 1.0 / (u + v + w);
-    let hit = TriangleHit { t, u: u * scale, v: v * scale };
-    (scale.is_finite()).then_some(hit)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    fn intersect_triangle(origin: Vec3A, direction: Vec3A, max_t: f32, corners: &[Vec3A; 3]) -> Option<TriangleHit> {
+        TriangleLanes::new(corners).intersect(&TriangleRay::new(origin, direction), max_t)
+    }
 
     #[test]
     fn hits_and_misses() {

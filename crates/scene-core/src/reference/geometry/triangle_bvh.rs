@@ -1,76 +1,18 @@
-//! Triangles in a compressed wide bounding volume hierarchy.
+//! Triangles in a hierarchy.
 
-use core::time::Duration;
 use std::collections::HashSet;
 
-use glam::{UVec2, Vec3A};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::builder::build_cwbvh;
-use obvhs::ray::{Ray as BvhRay, safe_inverse};
-use obvhs::{BvhBuildParams, traverse};
 
-use super::triangle::{TriangleHit, intersect_triangle};
+use super::hierarchy::Hierarchy;
+use super::triangle::{TriangleHit, TriangleLanes, TriangleRay};
 use crate::ray::Ray;
-
-/// A hierarchy of obvhs, with what its rays need.
-///
-/// obvhs ignores boxes that a ray enters and leaves before the parameter 1e-4, whatever the unit of length. So rays are
-/// handed to it in a unit so small (a power of two, hence exact) that this lies far below the scene's round-off.
-#[derive(Clone, Debug)]
-pub(crate) struct Hierarchy {
-    pub(super) bvh: CwBvh,
-    /// Hierarchy's units per unit of length.
-    scale: f32,
-}
-
-impl Hierarchy {
-    /// A ray as obvhs wants it.
-    #[inline(always)]
-    pub(super) fn ray(&self, ray: &Ray) -> BvhRay {
-        // Adding zero turns negative zeros, on whose sign obvhs does not agree with itself, into positive ones.
-        let d = ray.direction + Vec3A::ZERO;
-        BvhRay {
-            origin: ray.origin,
-            direction: d,
-            inv_direction: Vec3A::new(safe_inverse(d.x), safe_inverse(d.y), safe_inverse(d.z)) * self.scale,
-            tmin: 0.0,
-            tmax: ray.max_distance * self.scale,
-        }
-    }
-
-    /// A ray parameter in the hierarchy's unit.
-    #[inline(always)]
-    pub(super) fn parameter(&self, t: f32) -> f32 {
-        t * self.scale
-    }
-}
 
 /// Whether the ray can be traced at all.
 #[inline(always)]
 pub(crate) fn is_traceable(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.direction.is_finite() && ray.max_distance > 0.0
-}
-
-/// Builds the hierarchy over boxes. Boxes are widened by a few units in the last place of the largest coordinate, so that
-/// the rounding of the slab test never loses what the exact test of the primitive would hit, and no box is flat.
-pub(crate) fn build(mut boxes: Vec<Aabb>) -> Hierarchy {
-    if boxes.is_empty() {
-        return Hierarchy { bvh: CwBvh::default(), scale: 1.0 };
-    }
-    let magnitude = boxes.iter().map(|b| b.min.abs().max(b.max.abs()).max_element()).fold(1e-20, f32::max);
-    let margin = Vec3A::splat(magnitude * (2.0 * f32::EPSILON));
-    for b in &mut boxes {
-        b.min -= margin;
-        b.max += margin;
-    }
-    // Reinsertion is superlinear: large scenes take the cheaper preset.
-    let parameters =
-        if boxes.len() > 500_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
-    let bvh = build_cwbvh(&boxes, parameters, &mut Duration::default());
-    // 2^22 units per largest coordinate: 1e-4 of one is 2.4e-11 of it.
-    let scale = (22.0 - magnitude.log2().ceil()).clamp(-100.0, 100.0).exp2();
-    Hierarchy { bvh, scale }
 }
 
 /// A hit of a triangle.
@@ -86,7 +28,7 @@ pub(crate) struct BvhHit {
 pub(crate) struct TriangleBvh {
     hierarchy: Hierarchy,
     /// In the order of the hierarchy's leaves.
-    corners: Vec<[Vec3A; 3]>,
+    triangles: Vec<TriangleLanes>,
     /// Index as given to [`TriangleBvh::new`], in the same order.
     originals: Vec<u32>,
 }
@@ -100,56 +42,44 @@ impl TriangleBvh {
         let distinct: Vec<u32> =
             (0..triangles.len() as u32).filter(|&i| seen.insert(bits(&triangles[i as usize]))).collect();
         drop(seen);
-        let boxes = distinct.iter().map(|&i| Aabb::from_points(&triangles[i as usize])).collect();
-        let hierarchy = build(boxes);
-        let originals: Vec<u32> = hierarchy.bvh.primitive_indices.iter().map(|&i| distinct[i as usize]).collect();
-        let corners = originals.iter().map(|&i| triangles[i as usize]).collect();
-        Self { hierarchy, corners, originals }
+        let boxes: Vec<Aabb> = distinct.iter().map(|&i| Aabb::from_points(&triangles[i as usize])).collect();
+        let hierarchy = Hierarchy::new(&boxes);
+        let originals: Vec<u32> = hierarchy.order().iter().map(|&i| distinct[i as usize]).collect();
+        let triangles = originals.iter().map(|&i| TriangleLanes::new(&triangles[i as usize])).collect();
+        Self { hierarchy, triangles, originals }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.corners.is_empty()
-    }
-
-    /// Bounds of all triangles.
-    pub(crate) fn bounds(&self) -> Aabb {
-        self.hierarchy.bvh.total_aabb
+    /// Bounds of all triangles; nothing if there are none.
+    pub(crate) fn bounds(&self) -> Option<Aabb> {
+        self.hierarchy.bounds()
     }
 
     /// The closest hit before `ray.max_distance`.
     #[inline]
     pub(crate) fn closest(&self, ray: &Ray) -> Option<BvhHit> {
-        let bvh = &self.hierarchy.bvh;
-        let mut bvh_ray = self.hierarchy.ray(ray);
-        let mut limit = ray.max_distance;
+        let triangle_ray = TriangleRay::new(ray.origin, ray.direction);
         let mut best = None;
-        let mut state = bvh.new_traversal(ray.direction);
-        let mut node;
-        traverse!(bvh, node, state, node.intersect_ray(&bvh_ray, state.oct_inv4), {
-            let slot = state.primitive_id as usize;
-            if let Some(hit) = intersect_triangle(ray.origin, ray.direction, limit, &self.corners[slot]) {
-                limit = hit.t;
-                bvh_ray.tmax = self.hierarchy.parameter(limit);
-                best = Some((slot, hit));
+        self.hierarchy.traverse(ray, ray.max_distance, |range, mut limit| {
+            let first = range.start;
+            for (position, triangle) in self.triangles[range].iter().enumerate() {
+                if let Some(hit) = triangle.intersect(&triangle_ray, limit) {
+                    limit = hit.t;
+                    best = Some((first + position, hit));
+                }
             }
+            limit
         });
-        best.map(|(slot, hit)| BvhHit { triangle: self.originals[slot], hit })
+        best.map(|(position, hit)| BvhHit { triangle: self.originals[position], hit })
     }
 
     /// Whether there is any hit before `ray.max_distance`.
     #[inline]
     pub(crate) fn any(&self, ray: &Ray) -> bool {
-        let bvh = &self.hierarchy.bvh;
-        let bvh_ray = self.hierarchy.ray(ray);
-        let mut state = bvh.new_traversal(ray.direction);
-        let mut node;
+        let triangle_ray = TriangleRay::new(ray.origin, ray.direction);
         let mut found = false;
-        traverse!(bvh, node, state, node.intersect_ray(&bvh_ray, state.oct_inv4), {
-            let corners = &self.corners[state.primitive_id as usize];
-            if intersect_triangle(ray.origin, ray.direction, ray.max_distance, corners).is_some() {
-                found = true;
-                break;
-            }
+        self.hierarchy.traverse(ray, ray.max_distance, |range, limit| {
+            found = self.triangles[range].iter().any(|triangle| triangle.intersect(&triangle_ray, limit).is_some());
+            if found { -1.0 } else { limit }
         });
         found
     }
@@ -161,7 +91,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn brute_force(triangles: &[[Vec3A; 3]], ray: &Ray) -> Option<f32> {
-        let hits = triangles.iter().filter_map(|t| intersect_triangle(ray.origin, ray.direction, ray.max_distance, t));
+        let triangle_ray = TriangleRay::new(ray.origin, ray.direction);
+        let hits = triangles.iter().filter_map(|t| TriangleLanes::new(t).intersect(&triangle_ray, ray.max_distance));
         hits.map(|hit| hit.t).min_by(f32::total_cmp)
     }
 
@@ -213,6 +144,6 @@ mod tests {
     fn nothing_is_in_an_empty_hierarchy() {
         let bvh = TriangleBvh::new(&[]);
         let ray = Ray::new(Vec3A::ZERO, Vec3A::X);
-        assert!(bvh.is_empty() && bvh.closest(&ray).is_none() && !bvh.any(&ray));
+        assert!(bvh.bounds().is_none() && bvh.closest(&ray).is_none() && !bvh.any(&ray));
     }
 }

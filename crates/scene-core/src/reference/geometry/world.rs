@@ -1,17 +1,17 @@
 //! All surfaces of a scene, in two levels.
 //!
-//! Meshes that are placed once are moved into the world and share one hierarchy of triangles. Everything else (meshes placed
-//! several times, spheres, disks) is an object of a second hierarchy, entered with the ray in the object's coordinates.
+//! Meshes that are placed once (or small) are moved into the world and share one hierarchy of triangles. Everything else
+//! (large meshes placed several times, spheres, disks) is an object of a second hierarchy, entered with the ray in the object's coordinates.
 
 use std::sync::Arc;
 
-use glam::{Affine3A, UVec2, Vec3A};
+use glam::{Affine3A, Vec3A};
 use obvhs::aabb::Aabb;
-use obvhs::traverse;
 
 use super::analytic::{intersect_disk, intersect_sphere};
 use super::mesh::TriangleMesh;
-use super::triangle_bvh::{Hierarchy, TriangleBvh, build, is_traceable};
+use super::hierarchy::Hierarchy;
+use super::triangle_bvh::{TriangleBvh, is_traceable};
 use crate::ray::{Ray, SurfacePoint};
 
 /// What one object is, in its own coordinates.
@@ -52,7 +52,10 @@ impl Object {
 
     fn bounds(&self) -> Aabb {
         let local = match &self.shape {
-            ObjectShape::Mesh { bvh, .. } => bvh.bounds(),
+            ObjectShape::Mesh { bvh, .. } => match bvh.bounds() {
+                Some(bounds) => bounds,
+                None => Aabb { min: Vec3A::ZERO, max: Vec3A::ZERO },
+            },
             ObjectShape::Sphere { center, radius, .. } => {
                 Aabb { min: *center - Vec3A::splat(radius.abs()), max: *center + Vec3A::splat(radius.abs()) }
             }
@@ -94,7 +97,7 @@ impl Object {
     }
 }
 
-/// A mesh placed once, moved into the world.
+/// A mesh moved into the world.
 #[derive(Clone, Debug)]
 pub(crate) struct WorldMesh {
     pub mesh: Arc<TriangleMesh>,
@@ -130,7 +133,7 @@ pub(crate) struct World {
     /// Mesh and triangle of each triangle of the hierarchy.
     origins: Vec<(u32, u32)>,
     objects: Vec<Object>,
-    object_bvh: Hierarchy,
+    hierarchy: Hierarchy,
     bounds: Option<Aabb>,
 }
 
@@ -146,12 +149,12 @@ impl World {
         }
         let triangles = TriangleBvh::new(&corners);
         let boxes: Vec<Aabb> = objects.iter().map(Object::bounds).collect();
-        let mut bounds = (!triangles.is_empty()).then(|| triangles.bounds());
+        let mut bounds = triangles.bounds();
         for b in &boxes {
             bounds = Some(bounds.map_or(*b, |all| Aabb { min: all.min.min(b.min), max: all.max.max(b.max) }));
         }
-        let object_bvh = build(boxes);
-        Self { meshes, triangles, origins, objects, object_bvh, bounds }
+        let hierarchy = Hierarchy::new(&boxes);
+        Self { meshes, triangles, origins, objects, hierarchy, bounds }
     }
 
     /// Bounds of everything; nothing if there is no surface.
@@ -184,21 +187,17 @@ impl World {
 
     #[inline]
     fn closest_object(&self, ray: &Ray) -> Option<WorldHit> {
-        let bvh = &self.object_bvh.bvh;
-        let mut bvh_ray = self.object_bvh.ray(ray);
-        let mut limit = ray.max_distance;
         let mut best = None;
-        let mut state = bvh.new_traversal(ray.direction);
-        let mut node;
-        traverse!(bvh, node, state, node.intersect_ray(&bvh_ray, state.oct_inv4), {
-            let index = bvh.primitive_indices[state.primitive_id as usize];
-            let object = &self.objects[index as usize];
-            if let Some((distance, triangle, u, v)) = object.closest(&ray.up_to(limit)) {
-                limit = distance;
-                bvh_ray.tmax = self.object_bvh.parameter(limit);
-                let primitive = Primitive::Object { object: index, triangle };
-                best = Some(WorldHit { distance, surface: object.surface, primitive, u, v });
+        self.hierarchy.traverse(ray, ray.max_distance, |range, mut limit| {
+            for &index in &self.hierarchy.order()[range] {
+                let object = &self.objects[index as usize];
+                if let Some((distance, triangle, u, v)) = object.closest(&ray.up_to(limit)) {
+                    limit = distance;
+                    let primitive = Primitive::Object { object: index, triangle };
+                    best = Some(WorldHit { distance, surface: object.surface, primitive, u, v });
+                }
             }
+            limit
         });
         best
     }
@@ -211,17 +210,10 @@ impl World {
 
     #[inline]
     fn any_object(&self, ray: &Ray) -> bool {
-        let bvh = &self.object_bvh.bvh;
-        let bvh_ray = self.object_bvh.ray(ray);
-        let mut state = bvh.new_traversal(ray.direction);
-        let mut node;
         let mut found = false;
-        traverse!(bvh, node, state, node.intersect_ray(&bvh_ray, state.oct_inv4), {
-            let index = bvh.primitive_indices[state.primitive_id as usize];
-            if self.objects[index as usize].any(ray) {
-                found = true;
-                break;
-            }
+        self.hierarchy.traverse(ray, ray.max_distance, |range, limit| {
+            found = self.hierarchy.order()[range].iter().any(|&index| self.objects[index as usize].any(ray));
+            if found { -1.0 } else { limit }
         });
         found
     }
