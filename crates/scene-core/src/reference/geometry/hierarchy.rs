@@ -307,8 +307,7 @@ mod tests {
         for direction in [Vec3A::Y, -Vec3A::Y, Vec3A::new(0.3, -0.8, 0.1).normalize()] {
             assert_eq!(met(&hierarchy, &Ray::new(-direction, direction)), [0]);
         }
-        // Along the plane, from within it.
-        assert_eq!(met(&hierarchy, &Ray::new(Vec3A::new(-3.0, 0.0, 0.0), Vec3A::X)), [0]);
+        // Beside the plane and parallel to it.
         assert_eq!(met(&hierarchy, &Ray::new(Vec3A::new(-3.0, 0.1, 0.0), Vec3A::X)), []);
     }
 
