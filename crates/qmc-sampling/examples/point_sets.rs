@@ -40,10 +40,9 @@ fn draw_set<S: Sequence>(out: &Path, name: &str, sequence: impl Fn(u64) -> S) ->
         for (dx, dy) in
             (-2..=2).flat_map(|dx| (-2..=2).map(move |dy| (dx, dy))).filter(|(dx, dy)| dx * dx + dy * dy < 6)
         {
-            if let (Ok(px), Ok(py)) = (u32::try_from(x + dx), u32::try_from(y + dy)) {
-                if px < side && py < side {
-                    picture.put_pixel(px, py, Luma([0]));
-                }
+            let [px, py] = [x + dx, y + dy];
+            if (0..i64::from(side)).contains(&px) && (0..i64::from(side)).contains(&py) {
+                picture.put_pixel(px as u32, py as u32, Luma([0]));
             }
         }
     }
@@ -61,9 +60,11 @@ fn draw_set<S: Sequence>(out: &Path, name: &str, sequence: impl Fn(u64) -> S) ->
 }
 
 /// A point set of `n` points in some randomisation, for an integrand of two dimensions.
-type Estimator = fn(seed: u64, n: u64, f: fn([f64; 2]) -> f64) -> f64;
+type Estimator = fn(seed: u64, n: u64, f: Integrand) -> f64;
 
-fn mean(sequence: impl Sequence, n: u64, f: fn([f64; 2]) -> f64) -> f64 {
+type Integrand = fn([f64; 2]) -> f64;
+
+fn mean(sequence: impl Sequence, n: u64, f: Integrand) -> f64 {
     (0..n).map(|i| f(sequence.sample_2d(i))).sum::<f64>() / n as f64
 }
 
@@ -79,7 +80,7 @@ const ESTIMATORS: [(&str, [u8; 3], Estimator); 6] = [
     ("lattice, shifted", [160, 80, 180], |seed, n, f| mean(Lattice::default().shifted(seed), n, f)),
 ];
 
-const INTEGRANDS: [(&str, fn([f64; 2]) -> f64); 3] = [
+const INTEGRANDS: [(&str, Integrand); 3] = [
     ("smooth", |[x, y]| (x + y).exp()),
     ("disk", |[x, y]| if x * x + y * y < 0.8 { 1.0 } else { 0.0 }),
     ("singular", |[x, y]| (1.0 + y) / x.max(1e-12).powf(0.25)),
