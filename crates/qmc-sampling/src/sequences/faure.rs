@@ -78,7 +78,7 @@ impl Sequence for Faure {
         }
         // Mirror its digits at the decimal point.
         let mut digits = digits.iter();
-        self.scramble.mirror(self.base, dimension, || digits.next().copied().unwrap_or(0))
+        self.scramble.mirror(self.base, dimension, 53, || digits.next().copied().unwrap_or(0))
     }
 }
 
