@@ -1,4 +1,4 @@
-//! Point sequences, samplers and warps for Monte Carlo and quasi-Monte Carlo integration.
+#![doc = include_str!("../README.md")]
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]
 // The tables of the Sobol sequence are computed by the compiler.

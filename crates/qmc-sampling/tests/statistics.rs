@@ -1,11 +1,11 @@
 //! Statistical tests, over independent randomisations: means are unbiased, variances fall as they should.
-use estimator_checks::{Suite, Truth, randomised_mean_is, slope_is};
+use estimator_checks::{ChiSquare, Hemisphere, Sphere, Suite, Truth, randomised_mean_is, slope_is};
 use qmc_sampling::sampler::{FromSequence, GlobalHalton, GlobalSobol, PaddedLattice, ZSobol};
 use qmc_sampling::sequences::{
     CranleyPatterson, DigitScramble, Faure, Halton, Lattice, MultiJittered, Random, Stratified, VanDerCorput,
 };
 use qmc_sampling::sobol::{Randomisation, Sobol};
-use qmc_sampling::{Independent, OwenSobol, Replications, Sampler, SamplerFamily, Sequence};
+use qmc_sampling::{Independent, OwenSobol, Replications, Sampler, SamplerFamily, Sequence, warp};
 
 static SUITE: Suite = Suite::with_share("qmc-sampling", 64, 1e-7);
 
@@ -96,8 +96,26 @@ impl Sequence for VanDerCorputDiagonal {
     }
 
     fn sample(&self, index: u64, _: u32) -> f64 {
-        VanDerCorput::new(2).unwrap().scrambled(DigitScramble::Owen(self.0)).sample(index, 0)
+        VanDerCorput::new(2).expect("a base").scrambled(DigitScramble::Owen(self.0)).sample(index, 0)
     }
+}
+
+#[test]
+fn warps_follow_their_densities() {
+    let hemisphere = || ChiSquare::on(Hemisphere).samples(200_000);
+    let run = |name: &str, sample: &dyn Fn([f64; 2]) -> [f64; 3], pdf: &dyn Fn([f64; 3]) -> f64| {
+        hemisphere().run(SUITE.check(name), |[u, v, _]| Some(sample([u, v])), pdf).expect_pass();
+    };
+    run("uniform hemisphere", &warp::sample_uniform_hemisphere, &warp::pdf_uniform_hemisphere);
+    run("cosine hemisphere", &warp::sample_cosine_hemisphere, &warp::pdf_cosine_hemisphere);
+    run("power cosine hemisphere", &|u| warp::sample_power_cosine_hemisphere(u, 5.0), &|w| {
+        warp::pdf_power_cosine_hemisphere(w, 5.0)
+    });
+    let sphere = ChiSquare::on(Sphere).samples(200_000);
+    let sample = |[u, v, _]: [f64; 3]| Some(warp::sample_uniform_sphere([u, v]));
+    sphere.run(SUITE.check("uniform sphere"), sample, |_| warp::pdf_uniform_sphere()).expect_pass();
+    let forgotten = |[u, v, _]: [f64; 3]| Some(warp::sample_cosine_hemisphere([u, v]));
+    hemisphere().run(SUITE.twin("cosine forgotten"), forgotten, warp::pdf_uniform_hemisphere).expect_reject();
 }
 
 /// Numbers of points and variances of means over that many.

@@ -2,7 +2,7 @@
 use super::ImageSequence;
 use crate::float::f64_from_bits;
 use crate::sequences::SequenceError;
-use crate::sobol::{INDEX_BITS, generator_matrix, sobol_bits};
+use crate::sobol::{INDEX_BITS, generator_matrix, sobol_bits, sobol_bits_u32};
 
 /// The Sobol sequence through the pixels of an image, on a square grid with a side of `2^m` pixels.
 ///
@@ -23,8 +23,8 @@ pub struct SobolImage {
     size: [u32; 2],
     /// `m`
     log2_side: u32,
-    /// Column `i` is the index of which only bit `i` of the pixel (x, then y) is set.
-    inverse: [u64; Self::MAX_BITS],
+    /// For each nibble of the pixel (x, then y) and each value of it, what it contributes to the low bits of the index.
+    inverse: [[u32; 16]; Self::MAX_BITS / 4],
 }
 
 impl SobolImage {
@@ -54,23 +54,23 @@ impl SobolImage {
     /// The cell of the grid that a point falls into, within the image or not.
     #[inline]
     fn cell(&self, index: u64) -> [u32; 2] {
-        [0, 1].map(|d| leading(sobol_bits(index, d), self.log2_side))
+        [0, 1].map(|d| leading(sobol_bits_u32(index, d), self.log2_side))
     }
 }
 
 /// The first `digits` digits of a binary fraction.
 #[inline]
-fn leading(bits: u64, digits: u32) -> u32 {
-    ((bits >> 32) >> (32 - digits)) as u32
+fn leading(bits: u32, digits: u32) -> u32 {
+    (u64::from(bits) >> (32 - digits)) as u32
 }
 
 /// Solves for the low index bits, by elimination over GF(2). The first two dimensions are a (0,2)-sequence, so that the
 /// matrix is regular.
-fn inverse(log2_side: u32) -> [u64; SobolImage::MAX_BITS] {
+fn inverse(log2_side: u32) -> [[u32; 16]; SobolImage::MAX_BITS / 4] {
     let n = 2 * log2_side;
     // Row i: the pixel that index bit i leads to, and the index that has it.
     let mut rows: [(u64, u64); SobolImage::MAX_BITS] = core::array::from_fn(|i| {
-        let [x, y] = [0, 1].map(|d| u64::from(leading(generator_matrix(d)[i], log2_side)));
+        let [x, y] = [0, 1].map(|d| u64::from(leading((generator_matrix(d)[i] >> 32) as u32, log2_side)));
         (x | (y << log2_side), 1 << i)
     });
     for bit in 0..n as usize {
@@ -84,7 +84,13 @@ fn inverse(log2_side: u32) -> [u64; SobolImage::MAX_BITS] {
             }
         }
     }
-    core::array::from_fn(|i| if i < n as usize { rows[i].1 } else { 0 })
+    core::array::from_fn(|nibble| {
+        core::array::from_fn(|value| {
+            let bits =
+                (0..4).map(|b| (4 * nibble + b, (value >> b) & 1 == 1)).filter(|&(i, set)| set && i < n as usize);
+            bits.fold(0, |index, (i, _)| index ^ rows[i].1 as u32)
+        })
+    })
 }
 
 impl ImageSequence for SobolImage {
@@ -113,11 +119,11 @@ impl ImageSequence for SobolImage {
         let [x, y] = self.cell(high);
         let mut rest = u64::from(pixel[0] ^ x) | (u64::from(pixel[1] ^ y) << self.log2_side);
         let mut low = 0;
-        while rest != 0 {
-            low ^= self.inverse[rest.trailing_zeros() as usize];
-            rest &= rest - 1;
+        for table in &self.inverse {
+            low ^= table[(rest & 15) as usize];
+            rest >>= 4;
         }
-        high | low
+        high | u64::from(low)
     }
 
     #[inline]

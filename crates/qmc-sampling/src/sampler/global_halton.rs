@@ -80,7 +80,7 @@ impl GlobalHaltonSampler {
             pattern = combine(pattern, index % side);
             index /= side;
         }
-        truncate_to_f32(DigitScramble::Owen(pattern).radical_inverse(base, index, dimension))
+        truncate_to_f32(DigitScramble::Owen(pattern).radical_inverse_short(base, index, dimension))
     }
 
     /// Makes room for `n` more dimensions.

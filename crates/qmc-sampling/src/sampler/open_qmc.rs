@@ -1,5 +1,5 @@
 //! The samplers of OpenQMC.
-use super::{Sampler, SamplerFamily};
+use super::{Sampler, SamplerFamily, Split};
 use openqmc::SamplerImpl;
 
 /// The samplers of OpenQMC, in its Rust port `openqmc-rs`: Sobol, lattice and progressive multi-jittered points, each with a
@@ -80,6 +80,14 @@ impl<I: SamplerImpl> Sampler for OpenQmcSampler<I> {
     #[inline]
     fn fork(&self, domain: u32) -> Self {
         Self { root: self.root.new_domain(domain.wrapping_mul(2) as i32), dimension: 0, group: [0.0; 4] }
+    }
+}
+
+impl<I: SamplerImpl> Split for OpenQmcSampler<I> {
+    #[inline]
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let root = self.root.new_domain_split(domain.wrapping_mul(2) as i32, children.max(1) as i32, child as i32);
+        Self { root, dimension: 0, group: [0.0; 4] }
     }
 }
 

@@ -94,8 +94,8 @@ impl OwenSobolSampler {
         self.draw(group)
     }
 
-    /// The four numbers of a group.
-    #[inline]
+    /// The four numbers of a group. Inlined always: then what does not depend on the index moves out of loops.
+    #[inline(always)]
     fn draw(&self, group: u32) -> [f32; 4] {
         // Derive five seeds: one for the index, one per dimension.
         let key = mix64(self.pattern.wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
@@ -112,7 +112,9 @@ impl OwenSobolSampler {
     }
 
     /// Brings the numbers of the current group to hand.
-    #[inline]
+    ///
+    /// Not inlined: its callers are, many times.
+    #[inline(never)]
     fn refill(&mut self) {
         self.group = self.draw(self.dimension / 4);
     }

@@ -118,6 +118,13 @@ const PERMUTATIONS: [u8; 24] = {
     all
 };
 
+/// A hash of the digits above one, with the well mixed `key`; its high half is good.
+#[inline]
+const fn digit_hash(above: u64, key: u64) -> u64 {
+    let hash = (above ^ key).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (hash ^ (hash >> 32)).wrapping_mul(0x94d0_49bb_1331_11eb)
+}
+
 impl ZSobolSampler {
     /// The index in the sequence: the permuted digits of the place on the curve, with the random number `key`.
     #[inline]
@@ -127,15 +134,15 @@ impl ZSobolSampler {
         let mut shift = u32::from(self.log2_points);
         // Permute digits in base 4, from the highest: one of 24 permutations, hashed from the digits above.
         while shift > u32::from(odd) {
-            let above = if shift == 64 { 0 } else { self.morton >> shift };
+            let hash = digit_hash(self.morton >> shift, key);
             shift -= 2;
-            let choice = ((combine(key, above) >> 32) * 24) >> 32;
+            let choice = ((hash >> 32) * 24) >> 32;
             let digit = (self.morton >> shift) & 3;
             index |= (u64::from(PERMUTATIONS[choice as usize] >> (2 * digit)) % 4) << shift;
         }
         // A single bit may be left over.
         if odd == 1 {
-            index |= (self.morton & 1) ^ (combine(key, self.morton >> 1) >> 63);
+            index |= (self.morton & 1) ^ (digit_hash(self.morton >> 1, key) >> 63);
         }
         index
     }

@@ -58,28 +58,27 @@ impl DigitScramble {
     pub fn radical_inverse(self, base: u32, index: u64, dimension: u32) -> f64 {
         match self {
             Self::None => radical_inverse(base, index),
-            Self::Permuted(_) | Self::Owen(_) => {
-                let mut rest = index;
-                self.mirror(base, dimension, || {
-                    let digit = (rest % u64::from(base)) as u32;
-                    rest /= u64::from(base);
-                    digit
-                })
-            }
+            Self::Permuted(_) | Self::Owen(_) => self.mirror(base, dimension, 53, digits_of(base, index)),
         }
     }
 
-    /// The fraction with the given digits, from the first one on, randomised. Takes as many as a double can tell apart.
-    pub(crate) fn mirror(self, base: u32, dimension: u32, mut digit: impl FnMut() -> u32) -> f64 {
+    /// The radical inverse to 32 bits: enough for single precision, and faster.
+    #[inline]
+    pub(crate) fn radical_inverse_short(self, base: u32, index: u64, dimension: u32) -> f64 {
+        self.mirror(base, dimension, 32, digits_of(base, index))
+    }
+
+    /// The fraction with the given digits, from the first one on, randomised, to a precision of so many bits.
+    pub(crate) fn mirror(self, base: u32, dimension: u32, bits: u32, mut digit: impl FnMut() -> u32) -> f64 {
         let (mut mirrored, mut scale) = (0, 1_u64);
         let (Self::None | Self::Permuted(_)) = self else {
-            return self.mirror_owen(base, dimension, digit);
+            return self.mirror_owen(base, dimension, bits, digit);
         };
         let mut key = match self {
             Self::Permuted(seed) => combine(seed, u64::from(dimension)),
             _ => 0,
         };
-        while scale < 1 << 53 && scale <= u64::MAX / u64::from(base) {
+        while scale < 1 << bits && scale <= u64::MAX / u64::from(base) {
             let d = digit();
             let d = if let Self::Permuted(_) = self { permute(d, base, (key >> 32) as u32) } else { d };
             key = combine(key, 0);
@@ -89,11 +88,11 @@ impl DigitScramble {
         fraction(mirrored, scale)
     }
 
-    fn mirror_owen(self, base: u32, dimension: u32, mut digit: impl FnMut() -> u32) -> f64 {
+    fn mirror_owen(self, base: u32, dimension: u32, bits: u32, mut digit: impl FnMut() -> u32) -> f64 {
         let Self::Owen(seed) = self else { return 0.0 };
         let mut key = combine(seed, u64::from(dimension));
         let (mut mirrored, mut scale) = (0, 1_u64);
-        while scale < 1 << 53 && scale <= u64::MAX / u64::from(base) {
+        while scale < 1 << bits && scale <= u64::MAX / u64::from(base) {
             let d = digit();
             mirrored = mirrored * u64::from(base) + u64::from(permute(d, base, (key >> 32) as u32));
             scale *= u64::from(base);
@@ -101,6 +100,22 @@ impl DigitScramble {
             key = combine(key, u64::from(d));
         }
         fraction(mirrored, scale)
+    }
+}
+
+/// The digits of `index`, one by one from the lowest; zeros when there are no more.
+#[inline]
+fn digits_of(base: u32, index: u64) -> impl FnMut() -> u32 {
+    let mut rest = index;
+    move || {
+        // Small numbers are divided faster.
+        if let Ok(short) = u32::try_from(rest) {
+            rest = u64::from(short / base);
+            return short % base;
+        }
+        let digit = (rest % u64::from(base)) as u32;
+        rest /= u64::from(base);
+        digit
     }
 }
 

@@ -16,8 +16,8 @@ use crate::sequence::Sequence;
 /// # fn main() -> Result<(), qmc_sampling::sequences::SequenceError> {
 /// let faure = Faure::new(3)?;
 /// assert_eq!(faure.base(), 3);
-/// let third = 1.0 / 3.0;
-/// assert_eq!([0, 1, 2].map(|d| faure.sample(1, d)), [third; 3]);
+/// let ninths = [0, 1, 2].map(|d| (9.0 * faure.sample(4, d)).round());
+/// assert_eq!(ninths, [4.0, 7.0, 1.0]);
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +78,7 @@ impl Sequence for Faure {
         }
         // Mirror its digits at the decimal point.
         let mut digits = digits.iter();
-        self.scramble.mirror(self.base, dimension, || digits.next().copied().unwrap_or(0))
+        self.scramble.mirror(self.base, dimension, 53, || digits.next().copied().unwrap_or(0))
     }
 }
 

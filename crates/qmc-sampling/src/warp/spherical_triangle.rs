@@ -11,9 +11,9 @@ use core::fmt;
 /// use qmc_sampling::warp::SphericalTriangle;
 /// # fn main() -> Result<(), qmc_sampling::warp::SphericalError> {
 /// let octant = SphericalTriangle::new([[1.0_f32, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])?;
-/// assert!((octant.solid_angle() - core::f32::consts::FRAC_PI_2).abs() < 1e-6);
-/// let w = octant.sample([0.3, 0.9]);
-/// assert!(octant.pdf(w) > 0.0 && (octant.invert(w)[1] - 0.9).abs() < 1e-5);
+/// assert!((octant.solid_angle() - core::f64::consts::FRAC_PI_2).abs() < 1e-6);
+/// let w = octant.sample([0.3_f32, 0.9]);
+/// assert!(octant.pdf(w) > 0.0 && (octant.invert(w)[1] - 0.9_f32).abs() < 1e-5);
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,8 +76,8 @@ impl SphericalTriangle {
 
     /// The solid angle, at most `2 pi`.
     #[must_use]
-    pub fn solid_angle<F: Real>(&self) -> F {
-        F::of(self.solid_angle)
+    pub fn solid_angle(&self) -> f64 {
+        self.solid_angle
     }
 
     /// A direction uniform over the triangle.
