@@ -1,1 +1,16 @@
-//! Workspace-wide tests.
+//! What the tests of the whole workspace share.
+//!
+//! - [`shares`]: how the statistical suites of all packages share out one false-positive rate.
+//! - [`block_means`]: renders a scene several times, to means over blocks of pixels that can be compared.
+//! - [`scenes`]: small scenes, each of which exercises one part of light transport.
+//! - [`planted`]: bugs that the tests must find.
+//!
+//! The quick forms run with `cargo test`; the long ones, with a hundred times the samples, by
+//! `cargo test --release --workspace -- --ignored`.
+
+mod block_means;
+pub mod planted;
+pub mod scenes;
+pub mod shares;
+
+pub use block_means::{Effort, block_means, blocks_of, means_of};

@@ -43,7 +43,7 @@ pub struct ShowcaseArguments {
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
     /// Number of threads; 0 is one per core.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
     pub threads: usize,
 }
 
@@ -57,6 +57,9 @@ impl Default for ShowcaseArguments {
 
 /// More samples per pixel than this are taken for a mistake.
 const MAX_SAMPLES: u64 = 1 << 32;
+
+/// So are more threads.
+const MAX_THREADS: usize = 4096;
 
 /// Arguments of `render`.
 #[derive(Clone, Debug, Args)]
@@ -79,7 +82,7 @@ pub struct RenderArguments {
     #[arg(long, conflicts_with = "time", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
     pub spp: Option<u64>,
     /// Seconds to render instead of a number of samples.
-    #[arg(long, value_parser = parse_positive)]
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
     pub time: Option<f64>,
     /// Size in pixels, as WIDTHxHEIGHT [default: the scene's]. The horizontal angle of view stays.
     #[arg(long, value_parser = parse_size)]
@@ -88,7 +91,7 @@ pub struct RenderArguments {
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// Number of threads; 0 is one per core.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
     pub threads: usize,
     /// Segments per path, as Mitsuba counts: 1 is visible emission, 2 direct light; -1 is unlimited
     /// [default: the scene's].
@@ -101,7 +104,7 @@ pub struct RenderArguments {
     #[arg(long, value_enum)]
     pub filter: Option<FilterName>,
     /// Distance up to which `ao` looks for occluders [default: a tenth of the scene's radius].
-    #[arg(long, value_parser = parse_positive)]
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
     pub ao_distance: Option<f64>,
     /// Image file, .exr (linear, with auxiliary channels) or .png; may be given more than once
     /// [default: out/SCENE.exr and out/SCENE.png].
@@ -142,6 +145,13 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         Some([0, _] | [_, 0]) => Err("an image needs at least one pixel in each direction".to_owned()),
         Some(size) => Ok(size),
         None => Err("expected WIDTHxHEIGHT, as in 640x360".to_owned()),
+    }
+}
+
+fn parse_threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(threads) if threads <= MAX_THREADS => Ok(threads),
+        _ => Err(format!("expected a number of threads up to {MAX_THREADS}")),
     }
 }
 
@@ -186,6 +196,7 @@ mod tests {
             &["--spp", "99999999999"],
             &["--time", "-1"],
             &["--time", "inf"],
+            &["--threads", "100000"],
             &["--max-depth", "0"],
             &["--spp", "4", "--time", "1"],
             &["-D", "=3"],

@@ -79,6 +79,19 @@ impl<F: Real> PiecewiseConstant1d<F> {
         sample_row(&self.cdf, &self.guide, u)
     }
 
+    /// A cell, its probability, and what remains of the number: uniform in `[0, 1)`, to be used again.
+    ///
+    /// As [`AliasTable::sample`](super::AliasTable::sample), but monotone, so that stratification survives.
+    #[inline]
+    #[must_use]
+    pub fn choose(&self, u: F) -> (usize, F, F) {
+        let u = u.clamp_unit();
+        let cell = cell_at(&self.cdf, &self.guide, u);
+        let start = self.cdf[cell];
+        let probability = self.cdf[cell + 1] - start;
+        (cell, probability, ((u - start) / probability).clamp_unit())
+    }
+
     /// The density at `x` with respect to length; zero outside of `[0, 1)`.
     #[inline]
     #[must_use]
@@ -160,14 +173,19 @@ pub(super) fn buckets(cells: usize) -> usize {
     (cells / 4).max(1).next_power_of_two()
 }
 
+/// The last cell that starts at or before `u`, which lies in `[0, 1)`.
+#[inline]
+fn cell_at<F: Real>(cdf: &[F], guide: &[u32], u: F) -> usize {
+    let bucket = (u * F::of_usize(guide.len() - 1)).to_usize();
+    let (first, last) = (guide[bucket] as usize, guide[bucket + 1] as usize);
+    first + cdf[first + 1..=last].partition_point(|&end| end <= u)
+}
+
 #[inline]
 pub(super) fn sample_row<F: Real>(cdf: &[F], guide: &[u32], u: F) -> (F, F, usize) {
     let u = u.clamp_unit();
     let cells = cdf.len() - 1;
-    // Find the cell: the last one that starts at or before u.
-    let bucket = (u * F::of_usize(guide.len() - 1)).to_usize();
-    let (first, last) = (guide[bucket] as usize, guide[bucket + 1] as usize);
-    let cell = first + cdf[first + 1..=last].partition_point(|&end| end <= u);
+    let cell = cell_at(cdf, guide, u);
     // Place the point within it.
     let probability = cdf[cell + 1] - cdf[cell];
     let x = place(cell, (u - cdf[cell]) / probability, cells);
@@ -212,6 +230,20 @@ fn place<F: Real>(cell: usize, within: F, cells: usize) -> F {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_remains_of_a_choice_is_uniform_and_agrees_with_sampling() {
+        let table = PiecewiseConstant1d::new(&[1.0_f32, 0.0, 3.0, 0.5]).unwrap();
+        for k in 0..=4096 {
+            let u = (k as f32 / 4096.0).min(1.0 - f32::EPSILON * 0.5);
+            let (cell, probability, rest) = table.choose(u);
+            let (x, _, sampled) = table.sample(u);
+            assert_eq!((cell, probability), (sampled, table.probability(cell)));
+            assert!((0.0..1.0).contains(&rest));
+            assert!((x * 4.0 - cell as f32 - rest).abs() < 1e-5);
+        }
+        assert_eq!(table.choose(f32::NAN).0, 0);
+    }
     use std::vec;
 
     fn tables() -> Vec<Vec<f32>> {

@@ -28,6 +28,7 @@ pub struct CompiledMaterial {
     opacity: Vec<Texture>,
     /// From the outermost to the innermost.
     normals: Vec<NormalModifier>,
+    needs_tangents: bool,
 }
 
 impl Material {
@@ -98,7 +99,9 @@ impl Wrappers {
 
     fn finish(self, front: Surface, back: Option<Surface>) -> CompiledMaterial {
         let Self { two_sided, evaluate_only, opacity, normals } = self;
-        CompiledMaterial { front, back, two_sided, evaluate_only, opacity, normals }
+        let is_anisotropic = front.is_anisotropic() || back.as_ref().is_some_and(Surface::is_anisotropic);
+        let needs_tangents = is_anisotropic || !normals.is_empty();
+        CompiledMaterial { front, back, two_sided, evaluate_only, opacity, normals, needs_tangents }
     }
 }
 
@@ -195,6 +198,13 @@ impl CompiledMaterial {
 
     fn opacity_at(&self, look_up: impl Fn(&Texture) -> Rgb) -> f32 {
         self.opacity.iter().map(|texture| look_up(texture).luminance().clamp(0.0, 1.0)).product()
+    }
+
+    /// Whether [`shading_frame`](Self::shading_frame) makes use of the tangents: for normals that are perturbed, and for
+    /// anisotropic materials. Otherwise any frame around the shading normal will do.
+    #[inline]
+    pub fn needs_tangents(&self) -> bool {
+        self.needs_tangents
     }
 
     /// Whether it has a mask.

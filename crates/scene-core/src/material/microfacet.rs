@@ -36,6 +36,11 @@ pub(super) struct Microfacet {
 }
 
 impl Microfacet {
+    /// Whether the roughness differs along the tangents.
+    pub(super) fn is_anisotropic(&self) -> bool {
+        self.alpha[0] != self.alpha[1]
+    }
+
     pub(super) fn new(distribution: Distribution, alpha: [f32; 2]) -> Self {
         let alpha = alpha.map(|a| a.max(MIN_ALPHA));
         let inverse2 = alpha.map(|a| 1.0 / (a * a));

@@ -52,6 +52,15 @@ impl Surface {
         matches!(self, Self::Dielectric(_) | Self::ThinDielectric(_) | Self::RoughDielectric(_))
     }
 
+    /// Whether it changes when turned about the normal.
+    pub(super) fn is_anisotropic(&self) -> bool {
+        match self {
+            Self::RoughConductor(m) => m.microfacet.is_anisotropic(),
+            Self::RoughDielectric(m) => m.microfacet.is_anisotropic(),
+            _ => false,
+        }
+    }
+
     /// Whether it has a component that is not a Dirac delta.
     #[inline]
     pub(super) fn is_connectible(&self) -> bool {

@@ -5,6 +5,7 @@ mod camera;
 mod description;
 mod emitters;
 mod geometry;
+mod light_checks;
 mod scene;
 mod vertex;
 

@@ -13,6 +13,7 @@ use super::emitters::{
     SphereEmitter, SpotEmitter, similarity_scale,
 };
 use super::geometry::{Object, ObjectShape, TriangleBvh, TriangleMesh, World, WorldMesh};
+use super::light_checks::check_light;
 use super::vertex::SceneVertex;
 use crate::material::{CompiledMaterial, MaterialError};
 use crate::ray::Ray;
@@ -65,6 +66,14 @@ pub enum SceneError {
         what: String,
         /// The value.
         value: [f32; 3],
+    },
+    /// A light that is nowhere, points nowhere, or is distorted.
+    #[error("{what} {reason}")]
+    Light {
+        /// Which light.
+        what: String,
+        /// What is wrong with it, with the value.
+        reason: String,
     },
     /// The camera.
     #[error(transparent)]
@@ -169,8 +178,8 @@ impl Scene for ReferenceScene {
     fn intersect(&self, ray: &Ray) -> Option<SceneVertex<'_>> {
         let hit = self.world.closest(ray)?;
         let surface = &self.surfaces[hit.surface as usize];
-        let geometry = self.world.local_geometry(ray, &hit);
         let material = &self.materials[surface.material as usize];
+        let geometry = self.world.local_geometry(ray, &hit, material.needs_tangents());
         Some(SceneVertex::new(&geometry, material, -ray.direction, surface.emitter, surface.radiance))
     }
 
@@ -265,7 +274,8 @@ impl<'d> Builder<'d> {
         let emitter = match &self.description.shapes[instance.shape.0 as usize] {
             Shape::Mesh(mesh) => self.place_mesh(index, instance.shape.0, mesh, to_world, radiance, surface)?,
             Shape::Sphere { center, radius, flip_normals } => {
-                let scale = similarity_scale(&to_world).filter(|s| *s > 0.0 && s.is_finite() && *radius > 0.0);
+                let is_finite = to_world.is_finite() && center.is_finite() && radius.is_finite();
+                let scale = similarity_scale(&to_world).filter(|s| *s > 0.0 && *radius > 0.0 && is_finite);
                 let Some(scale) = scale else {
                     return Err(transform_error(index, to_world, "must scale a sphere uniformly, to a positive radius"));
                 };
@@ -356,6 +366,7 @@ fn add_lights(
     let mut environments = Vec::new();
     for (index, light) in lights.iter().enumerate() {
         let name = |kind: &str| format!("{kind} light {index}");
+        check_light(index, light)?;
         let id = EmitterId(emitters.len() as u32);
         emitters.push(match light {
             Light::Point { position, intensity } => {

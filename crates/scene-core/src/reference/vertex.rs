@@ -31,13 +31,17 @@ impl<'s> SceneVertex<'s> {
         emitter: Option<EmitterId>,
         radiance: Rgb,
     ) -> Self {
-        let frame = material.shading_frame(&ShadingInput {
-            uv: geometry.point.uv,
-            dpdu: geometry.dpdu,
-            dpdv: geometry.dpdv,
-            shading_normal: geometry.shading_normal,
-            geometric_normal: geometry.point.normal,
-        });
+        let frame = if material.needs_tangents() {
+            material.shading_frame(&ShadingInput {
+                uv: geometry.point.uv,
+                dpdu: geometry.dpdu,
+                dpdv: geometry.dpdv,
+                shading_normal: geometry.shading_normal,
+                geometric_normal: geometry.point.normal,
+            })
+        } else {
+            Frame::from_z(geometry.shading_normal)
+        };
         Self {
             point: geometry.point,
             frame,

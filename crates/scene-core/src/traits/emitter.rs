@@ -52,7 +52,8 @@ pub struct EmissionSample<S> {
 ///
 /// # Laws
 /// - `sample_direct` returns `wi` with density `pdf_direct(from, wi, at)`, and `radiance(at, -wi)` of the returned
-///   point is its radiance, unless the sample is a Dirac delta.
+///   point (`radiance(None, wi)` for emitters at infinity) is its radiance, unless the sample is a Dirac delta. Where
+///   several points of one emitter lie in direction `wi`, the density is that of reaching this one.
 /// - `sample_emission` returns rays whose flux has the expectation [`power`](Self::power) (for emitters at
 ///   infinity: the power that enters the scene's bounding sphere, see each).
 /// - Both reach every point and direction with positive radiance.

@@ -46,7 +46,16 @@ pub struct ScatterSample<S> {
 ///   `throughput * pdf_solid_angle == eval(wi, mode)`.
 /// - `eval(wi, mode) > 0` implies `pdf_solid_angle(wi, mode) > 0`.
 /// - Adjoint: with `g = |cos(.., geometric normal)|`, `eval(wi, Radiance) / g(wi)` equals
-///   `reversed(wi).eval(wo, Importance) / g(wo)`, times the squared ratio of refractive indices for transmission.
+///   `reversed(wi).eval(wo, Importance) / g(wo)`, for reflection and transmission alike: radiance from `wi` to `wo` is what
+///   importance sees from `wo` to `wi` (Veach 1997, section 3.7.5). So a path has one contribution, whichever end it is
+///   walked from. Exceptions are implementations whose shading frame depends on `wo`.
+/// - All values are finite and not negative for all pairs of unit vectors.
+///
+/// # Where the two normals disagree
+/// Directions may lie on the front of the shading normal and behind the geometric one, or the other way around. Like
+/// Mitsuba's, the reference scene's vertices look at the shading frame alone: such a direction scatters as the shading normal
+/// says (no energy is lost at the silhouettes of smooth meshes), and [`spawn_ray`](Self::spawn_ray) leaves on the side of
+/// the surface that it really points to. Both modes do so, hence the adjoint law holds there too.
 ///
 /// Two eval's and no further cosine make the connection of two vertices: `a.eval(a->b) * b.eval(b->a) / distance^2`.
 pub trait Vertex: Clone {
@@ -55,7 +64,8 @@ pub trait Vertex: Clone {
 
     /// Position, geometric normal and bound of the position's round-off.
     fn point(&self) -> &SurfacePoint;
-    /// The unit normal that shading uses (interpolated or bumped), in the hemisphere of the geometric one.
+    /// The unit normal that shading uses (interpolated, bumped or mapped). Interpolated normals lie in the hemisphere of the
+    /// geometric one; a strong normal map may tilt it further.
     fn shading_normal(&self) -> Vec3A;
     /// Unit direction to where the path came from.
     fn wo(&self) -> Vec3A;

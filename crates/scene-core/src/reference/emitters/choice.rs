@@ -58,8 +58,8 @@ impl EmitterChoice for PowerChoice {
     #[inline]
     fn choose(&self, _from: Option<&SurfacePoint>, u: f32) -> Option<ChosenEmitter> {
         let table = self.table.as_ref()?;
-        let (_, _, index) = table.sample(u);
-        Some(ChosenEmitter { id: EmitterId(index as u32), probability: table.probability(index) })
+        let (index, probability, _) = table.choose(u);
+        Some(ChosenEmitter { id: EmitterId(index as u32), probability })
     }
 
     #[inline]

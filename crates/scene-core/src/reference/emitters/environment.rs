@@ -43,7 +43,7 @@ struct RadianceImage {
 impl RadianceImage {
     fn new(image: &Image, scale: f32, to_world: Mat3A) -> Option<Self> {
         let (width, height) = (image.width() as usize, (image.height() as usize).max(2));
-        let clean = |rgb: Rgb| rgb.map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 }) * scale;
+        let clean = |rgb: Rgb| (rgb * scale).map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
         let last = image.height().saturating_sub(1);
         let pixel = |i: usize, j: usize| clean(image.pixel(i as u32, (j as u32).min(last)));
         let nodes: Vec<Rgb> = (0..width * height).map(|k| pixel(k % width, k / width)).collect();

@@ -42,13 +42,60 @@ pub struct MeshEmitter {
     normal_matrix: Mat3A,
     table: AreaTable,
     radiance: Rgb,
+    parallelogram: Option<Parallelogram>,
+}
+
+/// Two triangles that make a parallelogram, as most lamps are: no triangle to choose, and the square's strata stay whole.
+#[derive(Clone, Copy, Debug)]
+struct Parallelogram {
+    corner: Vec3A,
+    sides: [Vec3A; 2],
+    normal: Vec3A,
+    error: f32,
+}
+
+impl Parallelogram {
+    /// If the mesh is one.
+    fn of(mesh: &TriangleMesh, to_world: &Affine3A) -> Option<Self> {
+        let &[first, second] = mesh.triangles() else { return None };
+        let position = |i: u32| Vec3A::from(mesh.positions()[i as usize]);
+        // The corners off the diagonal, which both triangles share.
+        let apart = |from: [u32; 3], other: [u32; 3]| {
+            let mut apart = from.into_iter().filter(|&i| other.iter().all(|&j| position(i) != position(j)));
+            apart.next().filter(|_| apart.next().is_none())
+        };
+        let (corner, opposite) = (apart(first, second)?, apart(second, first)?);
+        let at = first.iter().position(|&i| i == corner)?;
+        let sides = [first[(at + 1) % 3], first[(at + 2) % 3]].map(|i| position(i) - position(corner));
+        let gap = position(corner) + sides[0] + sides[1] - position(opposite);
+        if gap.length() > 1e-5 * (sides[0].length() + sides[1].length()) {
+            return None;
+        }
+        let shading = mesh.normals().get(corner as usize).map(|&n| Vec3A::from(n)).unwrap_or(Vec3A::ZERO);
+        let local = sides[0].cross(sides[1]);
+        let outside = local * if local.dot(shading) < 0.0 { -1.0 } else { 1.0 };
+        let all = first.into_iter().chain([opposite]).map(|i| to_world.transform_point3a(position(i)).abs().max_element());
+        Some(Self {
+            corner: to_world.transform_point3a(position(corner)),
+            sides: sides.map(|side| to_world.transform_vector3a(side)),
+            normal: (to_world.matrix3.inverse().transpose() * outside).try_normalize()?,
+            error: SurfacePoint::error_of(all.fold(0.0, f32::max)),
+        })
+    }
+
+    #[inline]
+    fn sample(&self, [u, v]: [f32; 2]) -> SurfacePoint {
+        let position = self.corner + self.sides[0] * u + self.sides[1] * v;
+        SurfacePoint { position, normal: self.normal, uv: [u, v], error: self.error }
+    }
 }
 
 impl MeshEmitter {
     /// `table` holds areas in coordinates that differ from the world's by a rotation and a uniform scale.
     pub(crate) fn new(mesh: Arc<TriangleMesh>, to_world: Affine3A, table: AreaTable, radiance: Rgb) -> Self {
         let normal_matrix = to_world.matrix3.inverse().transpose();
-        Self { mesh, to_world, normal_matrix, table, radiance }
+        let parallelogram = Parallelogram::of(&mesh, &to_world);
+        Self { mesh, to_world, normal_matrix, table, radiance, parallelogram }
     }
 
     /// The emitting area, in world units.
@@ -58,10 +105,12 @@ impl MeshEmitter {
 
     #[inline]
     fn sample_point(&self, u: [f32; 2]) -> SurfacePoint {
+        if let Some(parallelogram) = &self.parallelogram {
+            return parallelogram.sample(u);
+        }
         // Choose a triangle by area and use the number again.
-        let (x, _, triangle) = self.table.choose.sample(u[0]);
-        let fraction = (x * self.table.choose.len() as f32 - triangle as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
-        let [wa, wb, wc] = sample_triangle([fraction, u[1]]);
+        let (triangle, _, rest) = self.table.choose.choose(u[0]);
+        let [wa, wb, wc] = sample_triangle([rest, u[1]]);
         let indices = self.mesh.triangles()[triangle].map(|i| i as usize);
         let [a, b, c] = indices.map(|i| Vec3A::from(self.mesh.positions()[i]));
         let mut normal = (b - a).cross(c - a);

@@ -121,7 +121,9 @@ fn direct_sample_of_area(from: Vec3A, at: SurfacePoint, area: f32, radiance: Rgb
 fn pdf_direct_of_area(from: Vec3A, wi: Vec3A, at: Option<&SurfacePoint>, area: f32) -> f32 {
     let Some(at) = at else { return 0.0 };
     let cos = -at.normal.dot(wi);
-    if cos > 0.0 { (at.position - from).length_squared() / (cos * area) } else { 0.0 }
+    let pdf = (at.position - from).length_squared() / (cos * area);
+    // What is seen so edge-on that the density overflows is never sampled.
+    if cos > 0.0 && pdf.is_finite() { pdf } else { 0.0 }
 }
 
 /// Diffuse emission from a point that was chosen uniformly: the cosine cancels, the flux is `pi area L`.

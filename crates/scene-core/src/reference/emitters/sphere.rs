@@ -38,12 +38,20 @@ impl SphereEmitter {
         point
     }
 
+    /// The density in the cone; nothing where the sphere is so far away that it overflows.
+    #[inline]
+    fn cone_pdf(one_minus_cos: f32) -> Option<f32> {
+        let pdf = 1.0 / (2.0 * PI * one_minus_cos);
+        pdf.is_finite().then_some(pdf)
+    }
+
     /// Squared sine and `1 - cos` of the half angle of the cone that the sphere subtends; nothing from inside.
     #[inline]
     fn cone(&self, from: Vec3A) -> Option<(f32, f32)> {
         let sin2 = self.radius * self.radius / (self.center - from).length_squared();
         // 1 - cos = sin^2 / (1 + cos) keeps its digits for small cones.
-        (sin2 < 1.0).then(|| (sin2, sin2 / (1.0 + (1.0 - sin2).sqrt())))
+        let one_minus_cos = sin2 / (1.0 + (1.0 - sin2).sqrt());
+        (sin2 < 1.0).then_some((sin2, one_minus_cos))
     }
 
     pub(super) fn power(&self) -> Rgb {
@@ -57,6 +65,7 @@ impl SphereEmitter {
             let point = self.point(sample_uniform_sphere(u).into());
             return direct_sample_of_area(from, point, self.area(), self.radiance);
         };
+        let pdf_solid_angle = Self::cone_pdf(one_minus_cos)?;
         let local = Vec3A::from(sample_uniform_cone(u, one_minus_cos));
         let between = self.center - from;
         let distance_to_center = between.length();
@@ -71,7 +80,7 @@ impl SphereEmitter {
             wi,
             at: Some((at, near)),
             radiance: self.radiance,
-            pdf_solid_angle: 1.0 / (2.0 * PI * one_minus_cos),
+            pdf_solid_angle,
             is_delta: false,
         })
     }
@@ -81,7 +90,7 @@ impl SphereEmitter {
         let cone = if self.inward { None } else { self.cone(from) };
         match cone {
             Some((_, one_minus_cos)) => match at {
-                Some(at) if at.normal.dot(wi) < 0.0 => 1.0 / (2.0 * PI * one_minus_cos),
+                Some(at) if at.normal.dot(wi) < 0.0 => Self::cone_pdf(one_minus_cos).unwrap_or(0.0),
                 _ => 0.0,
             },
             None => pdf_direct_of_area(from, wi, at, self.area()),

@@ -17,7 +17,7 @@ use obvhs::bvh2::builder::build_bvh2;
 use crate::ray::Ray;
 
 /// Nodes waiting at most.
-const STACK_SIZE: usize = 96;
+const STACK_SIZE: usize = 64;
 /// Primitives in a leaf at most.
 const MAX_LEAF: u32 = 4;
 /// `1 + 2 gamma_3`: makes the slab test conservative (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
@@ -88,7 +88,9 @@ impl Hierarchy {
         // Reinsertion is superlinear: large scenes take the cheaper preset.
         let preset =
             if boxes.len() > 500_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
-        let parameters = BvhBuildParams { max_prims_per_leaf: MAX_LEAF, ..preset };
+        // A node of four boxes costs about as much as one triangle.
+        let parameters =
+            BvhBuildParams { max_prims_per_leaf: MAX_LEAF, collapse_traversal_cost: 0.5, ..preset };
         let binary = build_bvh2(boxes, parameters, &mut Duration::default());
         let (hierarchy, depth) = Self::collapse(&binary);
         if 3 * depth < STACK_SIZE { hierarchy } else { Self::balanced(boxes) }

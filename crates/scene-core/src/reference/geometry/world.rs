@@ -220,16 +220,17 @@ impl World {
 
     /// The geometry at a hit.
     #[inline]
-    pub(crate) fn local_geometry(&self, ray: &Ray, hit: &WorldHit) -> LocalGeometry {
+    pub(crate) fn local_geometry(&self, ray: &Ray, hit: &WorldHit, with_tangents: bool) -> LocalGeometry {
         match hit.primitive {
             Primitive::World { mesh, triangle } => {
-                LocalGeometry::of_triangle(&self.meshes[mesh as usize].mesh, triangle as usize, hit.u, hit.v)
+                let mesh = &self.meshes[mesh as usize].mesh;
+                LocalGeometry::of_triangle(mesh, triangle as usize, hit.u, hit.v, with_tangents)
             }
             Primitive::Object { object, triangle } => {
                 let object = &self.objects[object as usize];
                 let local = match &object.shape {
                     ObjectShape::Mesh { mesh, .. } => {
-                        LocalGeometry::of_triangle(mesh, triangle as usize, hit.u, hit.v)
+                        LocalGeometry::of_triangle(mesh, triangle as usize, hit.u, hit.v, with_tangents)
                     }
                     ObjectShape::Sphere { center, radius, flip_normals } => {
                         let position = object.to_object.transform_point3a(ray.at(hit.distance));
@@ -255,8 +256,9 @@ pub(crate) struct LocalGeometry {
 }
 
 impl LocalGeometry {
-    #[inline]
-    pub(crate) fn of_triangle(mesh: &TriangleMesh, triangle: usize, u: f32, v: f32) -> Self {
+    /// Without `with_tangents`, the derivatives are any two edges.
+    #[inline(always)]
+    fn of_triangle(mesh: &TriangleMesh, triangle: usize, u: f32, v: f32, with_tangents: bool) -> Self {
         let indices = mesh.triangles()[triangle].map(|i| i as usize);
         let [a, b, c] = indices.map(|i| Vec3A::from(mesh.positions()[i]));
         let w = 1.0 - u - v;
@@ -277,6 +279,9 @@ impl LocalGeometry {
         let (mut dpdu, mut dpdv) = (e1, e2);
         if let [Some(ta), Some(tb), Some(tc)] = indices.map(|i| mesh.uvs().get(i).copied()) {
             point.uv = core::array::from_fn(|i| ta[i] * w + tb[i] * u + tc[i] * v);
+            if !with_tangents {
+                return Self { point, shading_normal, dpdu, dpdv };
+            }
             let (d1, d2) = ([tb[0] - ta[0], tb[1] - ta[1]], [tc[0] - ta[0], tc[1] - ta[1]]);
             let determinant = d1[0] * d2[1] - d1[1] * d2[0];
             if determinant != 0.0 {

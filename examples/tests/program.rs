@@ -1,0 +1,438 @@
+//! The `lichtwerk` program from end to end.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::fs;
+use std::io::Read;
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+use scene_core::film::LayeredImage;
+use tempfile::TempDir;
+
+fn lichtwerk(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lichtwerk"));
+    command.args(arguments).current_dir(folder).stdin(Stdio::null());
+    command
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    lichtwerk(folder, arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// Runs what must succeed in silence.
+fn succeeds(folder: &Path, arguments: &[&str]) {
+    let output = run(folder, arguments);
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""), "{arguments:?}");
+    assert_eq!(text(&output.stdout), "", "{arguments:?}");
+}
+
+/// Runs what must fail with one line that holds all `reasons`.
+fn fails(folder: &Path, arguments: &[&str], reasons: &[&str]) {
+    let output = run(folder, arguments);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
+    assert!(message.starts_with("error: ") && message.lines().count() == 1, "{arguments:?}: {message}");
+    for reason in reasons {
+        assert!(message.contains(reason), "{arguments:?}: '{message}' does not say '{reason}'");
+    }
+    assert_eq!(text(&output.stdout), "", "{arguments:?}");
+}
+
+/// The least rendering: a few pixels of the Cornell box.
+fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&["render", "cornell-box", "--size", "8x6", "--spp", "1"], more].concat()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// A Mitsuba file with a camera, and `content` from the third line.
+fn scene_file(folder: &Path, name: &str, content: &str) {
+    let head = "<scene version=\"3.0.0\">\n<sensor type=\"perspective\"/>\n";
+    fs::write(folder.join(name), format!("{head}{content}\n</scene>\n")).unwrap();
+}
+
+/// Width and height that the header of a PNG file states.
+fn png_size(path: &Path) -> [u32; 2] {
+    let bytes = fs::read(path).unwrap();
+    assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
+    assert!(bytes.ends_with(b"IEND\xaeB`\x82"));
+    [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
+}
+
+#[test]
+fn list_names_what_can_be_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["list"]);
+    assert!(output.status.success() && output.stderr.is_empty());
+    for name in ["cornell-box", "furnace", "interior", "path", "light", "direct", "ao", "balance", "sobol", "gaussian"]
+    {
+        assert!(text(&output.stdout).lines().any(|line| line.trim_start().starts_with(name)), "{name}");
+    }
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn render_writes_images_and_stats_and_says_nothing_in_a_pipe() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    for estimator in ["path", "light", "direct", "ao"] {
+        let more =
+            ["--estimator", estimator, "--out", "a.exr", "--out", "a.png", "--stats", "a.json", "--threads", "2"];
+        succeeds(folder.path(), &tiny(&more));
+        assert_eq!(names(folder.path()), ["a.exr", "a.json", "a.png"]);
+        assert_eq!(png_size(&path("a.png")), [8, 6]);
+
+        let image = LayeredImage::read_exr(&path("a.exr")).unwrap();
+        assert_eq!((image.width(), image.height()), (8, 6));
+        for channel in ["R", "G", "B", "Albedo.R", "N.X", "Z", "Variance.R"] {
+            assert!(image.channel(channel).is_some(), "{channel}");
+        }
+        assert!(image.rgb().unwrap().iter().flatten().sum::<f32>() > 0.0);
+
+        let stats: serde_json::Value = serde_json::from_slice(&fs::read(path("a.json")).unwrap()).unwrap();
+        let mut keys: Vec<_> = stats.as_object().unwrap().keys().map(String::as_str).collect();
+        keys.sort_unstable();
+        let mut documented = [
+            ["scene", "estimator", "width", "height"],
+            ["spp", "threads", "load_seconds", "render_seconds"],
+            ["paths", "closest_hit_rays", "visibility_rays", "peak_bytes"],
+        ]
+        .concat();
+        documented.sort_unstable();
+        assert_eq!(keys, documented);
+        assert_eq!((&stats["scene"], &stats["estimator"]), (&"cornell-box".into(), &estimator.into()));
+        assert_eq!((&stats["width"], &stats["height"], &stats["spp"]), (&8.into(), &6.into(), &1.into()));
+        assert_eq!(stats["threads"], 2);
+        assert_eq!(stats["paths"], if estimator == "light" { 96 } else { 48 });
+        assert!(stats["closest_hit_rays"].as_u64().unwrap() >= 48);
+        assert!(stats["load_seconds"].as_f64().unwrap() > 0.0 && stats["render_seconds"].as_f64().unwrap() > 0.0);
+    }
+}
+
+#[test]
+fn without_a_name_images_go_to_out() {
+    let folder = tempfile::tempdir().unwrap();
+    succeeds(folder.path(), &tiny(&[]));
+    assert_eq!(names(&folder.path().join("out")), ["cornell-box.exr", "cornell-box.png"]);
+}
+
+#[test]
+fn the_command_line_fixes_the_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let pixels = |name: &str, more: &[&str]| {
+        succeeds(folder.path(), &tiny(&[&["--out", name], more].concat()));
+        LayeredImage::read_exr(&folder.path().join(name)).unwrap().rgb().unwrap()
+    };
+    let first = pixels("a.exr", &["--threads", "1"]);
+    assert_eq!(first, pixels("b.exr", &["--threads", "3"]));
+    assert_ne!(first, pixels("c.exr", &["--seed", "1"]));
+    assert_ne!(first, pixels("d.exr", &["--max-depth", "2"]));
+    assert_eq!(pixels("e.exr", &["--estimator", "direct"]), pixels("d.exr", &["--max-depth", "2"]));
+}
+
+#[test]
+fn diff_compares_two_images() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    succeeds(folder, &tiny(&["--out", "a.exr"]));
+    succeeds(folder, &tiny(&["--out", "b.exr", "--seed", "5"]));
+    for (other, same) in [("a.exr", true), ("b.exr", false)] {
+        let output = run(folder, &["diff", other, "a.exr", "--json", "diff.json"]);
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+        for metric in ["MSE", "relative MSE", "MRSE", "FLIP", "ratio"] {
+            assert!(text(&output.stdout).contains(metric), "{metric}");
+        }
+        let report: serde_json::Value = serde_json::from_slice(&fs::read(folder.join("diff.json")).unwrap()).unwrap();
+        for metric in ["mse", "relative_mse", "mrse", "flip_ldr", "flip_hdr"] {
+            assert_eq!(report[metric].as_f64().unwrap() == 0.0, same, "{metric} of {other}");
+        }
+        assert!(!same || report["mean_ratio"][0] == 1.0);
+    }
+
+    succeeds(folder, &["render", "furnace", "--size", "4x4", "--spp", "1", "--out", "small.exr"]);
+    fails(folder, &["diff", "a.exr", "small.exr"], &["8x6", "4x4"]);
+    fails(folder, &["diff", "a.exr", "missing.exr"], &["missing.exr"]);
+    let whole = fs::read(folder.join("a.exr")).unwrap();
+    fs::write(folder.join("half.exr"), &whole[..whole.len() / 2]).unwrap();
+    fails(folder, &["diff", "half.exr", "a.exr"], &["half.exr"]);
+}
+
+#[test]
+fn the_showcase_fills_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["showcase", "--out", "new/show", "--spp", "1", "--size", "16x9"]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
+    let found = names(&folder.path().join("new/show"));
+    assert!(
+        found.iter().any(|name| name.ends_with(".exr")) && found.iter().any(|name| name.ends_with(".png")),
+        "{found:?}"
+    );
+    for heading in ["seconds", "rays", "error", "efficiency"] {
+        assert!(text(&output.stdout).contains(heading), "{heading}");
+    }
+    fs::write(folder.path().join("file"), "").unwrap();
+    fails(folder.path(), &["showcase", "--out", "file/show", "--spp", "1", "--size", "16x9"], &["file/show"]);
+}
+
+#[test]
+fn scenes_that_are_none_have_one_line_reasons() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let render = |scene| ["render", scene, "--size", "8x6", "--spp", "1", "--out", "a.exr"];
+    fails(folder, &render("nowhere"), &["'nowhere'", "lichtwerk list"]);
+    fails(folder, &render("missing.xml"), &["missing.xml", "No such file"]);
+    fails(folder, &render("."), &["."]);
+    fs::write(folder.join("scene.txt"), "").unwrap();
+    fails(folder, &render("scene.txt"), &["scene.txt", ".xml"]);
+    fs::create_dir(folder.join("folder.xml")).unwrap();
+    fails(folder, &render("folder.xml"), &["folder.xml"]);
+
+    scene_file(folder, "whole.xml", "<emitter type=\"constant\"/>\n<shape type=\"sphere\"/>");
+    succeeds(folder, &render("whole.xml"));
+    let whole = fs::read(folder.join("whole.xml")).unwrap();
+    fs::write(folder.join("truncated.xml"), &whole[..whole.len() - 20]).unwrap();
+    fails(folder, &render("truncated.xml"), &["truncated.xml:"]);
+    fs::write(folder.join("bytes.xml"), [0xff, 0xfe, 0x00]).unwrap();
+    fails(folder, &render("bytes.xml"), &["bytes.xml"]);
+
+    fs::write(folder.join("nothing.xml"), "<scene version=\"3.0.0\"></scene>").unwrap();
+    fails(folder, &render("nothing.xml"), &["no sensor"]);
+    scene_file(folder, "empty.xml", "");
+    fails(folder, &render("empty.xml"), &["empty.xml", "the scene is empty"]);
+    scene_file(folder, "dark.xml", "<shape type=\"sphere\"/>");
+    fails(folder, &render("dark.xml"), &["dark.xml", "no light"]);
+    scene_file(folder, "plugin.xml", "<shape type=\"sphere\">\n<bsdf type=\"velvet\"/>\n</shape>");
+    fails(folder, &render("plugin.xml"), &["plugin.xml:4", "`velvet`"]);
+    scene_file(folder, "mesh.xml", "<shape type=\"ply\"><string name=\"filename\" value=\"no.ply\"/></shape>");
+    fails(folder, &render("mesh.xml"), &["no.ply"]);
+    scene_file(folder, "a.xml", "<include filename=\"b.xml\"/>");
+    scene_file(folder, "b.xml", "<include filename=\"a.xml\"/>");
+    fails(folder, &render("a.xml"), &["cycle", "b.xml"]);
+    let nan = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"nan 1 1\"/></emitter>";
+    scene_file(folder, "nan.xml", nan);
+    fails(folder, &render("nan.xml"), &["nan.xml"]);
+    fails(folder, &tiny(&["-D", "a=b"]), &["takes no parameters"]);
+    assert!(!folder.join("a.exr").exists() || fs::remove_file(folder.join("a.exr")).is_ok());
+}
+
+#[test]
+fn nonsense_on_the_command_line_is_status_2() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, reason) in [
+        (&["--size", "0x8"][..], "at least one pixel"),
+        (&["--size", "8"], "WIDTHxHEIGHT"),
+        (&["--spp", "99999999999999"], "not in 1..="),
+        (&["--time", "-3"], "positive number"),
+        (&["--max-depth", "0"], "segments"),
+        (&["--estimator", "magic"], "possible values: path"),
+        (&["--threads", "1000000"], "threads"),
+    ] {
+        let output = run(folder.path(), &[&["render", "cornell-box"], arguments].concat());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(reason), "{arguments:?}: {message}");
+    }
+    let output = run(folder.path(), &["--help"]);
+    assert!(output.status.success() && text(&output.stdout).contains("render"));
+    for (size, reason) in [("100000x100000", "between 1 and"), ("65536x65536", "too large")] {
+        fails(folder.path(), &["render", "cornell-box", "--size", size, "--spp", "1"], &[reason]);
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_found_before_rendering() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::create_dir(folder.join("folder.exr")).unwrap();
+    // So many samples that rendering first would not end.
+    let render = |option, name| ["render", "cornell-box", "--size", "64x64", "--spp", "1000000000", option, name];
+    for name in ["no/such/folder.exr", "folder.exr", "/proc/image.exr", "/a.exr/b.png"] {
+        fails(folder, &render("--out", name), &["cannot write", name]);
+    }
+    fails(folder, &render("--stats", "no/stats.json"), &["cannot write", "no/stats.json"]);
+    fails(folder, &render("--out", "image.jpeg"), &["image.jpeg", ".exr or .png"]);
+    fails(folder, &render("--out", "image"), &["image", ".exr or .png"]);
+    assert!(!folder.join("out/cornell-box.exr").exists());
+}
+
+/// A file system of 64 KiB, unmounted at the end.
+struct SmallDisk(TempDir);
+
+impl SmallDisk {
+    fn mount() -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"]).arg(folder.path()).output();
+        mount.is_ok_and(|output| output.status.success()).then_some(Self(folder))
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(self.0.path()).status();
+    }
+}
+
+#[test]
+fn a_full_disk_leaves_the_old_file() {
+    let Some(disk) = SmallDisk::mount() else {
+        println!("skipped: this user cannot mount a small file system");
+        return;
+    };
+    let folder = disk.0.path();
+    fs::write(folder.join("image.exr"), "old").unwrap();
+    fails(
+        folder,
+        &["render", "furnace", "--size", "160x120", "--spp", "1", "--out", "image.exr"],
+        &["cannot write image.exr", "No space left"],
+    );
+    assert_eq!(fs::read(folder.join("image.exr")).unwrap(), b"old");
+    assert_eq!(names(folder), ["image.exr"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    std::os::unix::fs::symlink("/dev/full", folder.path().join("full.exr")).unwrap();
+    fails(folder.path(), &tiny(&["--out", "full.exr"]), &["cannot write full.exr", "No space left"]);
+}
+
+/// A rendering without end that shows its image to this test: when data arrives, it is under way.
+struct Running {
+    child: Child,
+    /// Keeps taking what the rendering shows.
+    _viewer: std::thread::JoinHandle<()>,
+}
+
+fn accept(listener: &TcpListener) -> TcpStream {
+    let (mut stream, _) = listener.accept().unwrap();
+    stream.read_exact(&mut [0]).unwrap();
+    stream
+}
+
+impl Running {
+    fn start(folder: &Path, more: &[&str]) -> Self {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let server = listener.local_addr().unwrap().to_string();
+        let mut arguments = vec!["render", "cornell-box", "--threads", "2"];
+        arguments.extend(more);
+        arguments.extend(["--display-server", &server]);
+        let child = lichtwerk(folder, &arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut stream = accept(&listener);
+        let viewer = std::thread::spawn(move || {
+            let mut buffer = vec![0; 1 << 16];
+            while stream.read(&mut buffer).is_ok_and(|count| count > 0) {}
+        });
+        Self { child, _viewer: viewer }
+    }
+
+    fn signal(&self, name: &str) {
+        assert!(Command::new("kill").args([name, &self.child.id().to_string()]).status().unwrap().success());
+    }
+
+    fn wait(self) -> Output {
+        self.child.wait_with_output().unwrap()
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_image_so_far() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        let more = ["--size", "64x64", "--spp", "1000000000", "--out", "a.exr", "--out", "a.png", "--stats", "a.json"];
+        let running = Running::start(folder.path(), &more);
+        running.signal(signal);
+        let output = running.wait();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{signal}: {message}");
+        assert!(message.starts_with("interrupted after ") && message.lines().count() == 1, "{message}");
+        assert_eq!(names(folder.path()), ["a.exr", "a.json", "a.png"]);
+        let image = LayeredImage::read_exr(&folder.path().join("a.exr")).unwrap();
+        assert!(image.rgb().unwrap().iter().flatten().all(|value| value.is_finite()));
+        let stats: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+        let samples = stats["spp"].as_u64().unwrap();
+        assert!((1..1_000_000_000).contains(&samples));
+        assert!(message.contains(&format!(" {samples} ")), "{message}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_while_rendering_leaves_the_old_file() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.exr"), "old").unwrap();
+    let running = Running::start(folder.path(), &["--size", "64x64", "--spp", "1000000000", "--out", "a.exr"]);
+    running.signal("-KILL");
+    assert_eq!(running.wait().status.code(), None);
+    assert_eq!(fs::read(folder.path().join("a.exr")).unwrap(), b"old");
+    assert_eq!(names(folder.path()), ["a.exr"], "writing had not begun");
+}
+
+#[cfg(unix)]
+#[test]
+fn killed_at_any_time_leaves_the_old_file_or_the_new_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path: PathBuf = folder.path().join("a.exr");
+    let (mut old, mut new) = (0, 0);
+    for milliseconds in [0, 5, 10, 15, 20, 30, 50, 80] {
+        fs::write(&path, "old").unwrap();
+        // A large file of a short rendering: there is something to interrupt.
+        let running = Running::start(folder.path(), &["--size", "400x400", "--spp", "1", "--out", "a.exr"]);
+        std::thread::sleep(Duration::from_millis(milliseconds));
+        // It may have ended by itself.
+        let _ = Command::new("kill").args(["-KILL", &running.child.id().to_string()]).stderr(Stdio::null()).status();
+        running.wait();
+        if fs::read(&path).unwrap() == b"old" {
+            old += 1;
+        } else {
+            assert_eq!(LayeredImage::read_exr(&path).unwrap().width(), 400);
+            new += 1;
+        }
+    }
+    println!("{old} old, {new} new files");
+}
+
+#[test]
+fn a_time_limit_ends_the_rendering() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["render", "cornell-box", "--size", "32x32", "--time", "1", "--out", "a.exr", "--stats", "a.json"];
+    succeeds(folder.path(), &arguments);
+    let stats: serde_json::Value = serde_json::from_slice(&fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+    assert!(stats["spp"].as_u64().unwrap() >= 1);
+    assert!(stats["render_seconds"].as_f64().unwrap() > 0.0);
+    assert!(LayeredImage::read_exr(&folder.path().join("a.exr")).is_ok());
+}
+
+#[test]
+fn no_viewer_is_only_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    for server in ["127.0.0.1:1", "nonsense"] {
+        let output = run(folder.path(), &tiny(&["--out", "a.exr", "--display-server", server]));
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        assert!(message.starts_with("warning: no display at ") && message.lines().count() == 1, "{message}");
+        fs::remove_file(folder.path().join("a.exr")).unwrap();
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = lichtwerk(folder.path(), &["list"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+}

@@ -1,0 +1,128 @@
+//! Bugs that renderers have had, put on purpose where the tests must find them.
+
+use mis_heuristics::{Balance, Densities, Heuristic};
+use scene_core::glam::Vec3A;
+use scene_core::{
+    ChosenEmitter, EmitterChoice, EmitterId, Ray, ScatterSample, Scene, SurfacePoint, TransportMode, Vertex,
+};
+
+/// A scene whose vertices scatter importance as if it were radiance: light paths know neither the correction for
+/// shading normals nor that refraction leaves importance as it is.
+#[derive(Clone, Debug)]
+pub struct OneMode<S>(pub S);
+
+/// A vertex of [`OneMode`].
+#[derive(Clone, Debug)]
+pub struct OneModeVertex<V>(V);
+
+impl<S: Scene> Scene for OneMode<S> {
+    type Spectrum = S::Spectrum;
+    type Vertex<'s>
+        = OneModeVertex<S::Vertex<'s>>
+    where
+        Self: 's;
+    type Emitter = S::Emitter;
+    type Sensor = S::Sensor;
+
+    fn intersect(&self, ray: &Ray) -> Option<Self::Vertex<'_>> {
+        self.0.intersect(ray).map(OneModeVertex)
+    }
+
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.0.occluded(ray)
+    }
+
+    fn emitters(&self) -> &[Self::Emitter] {
+        self.0.emitters()
+    }
+
+    fn environment(&self) -> Option<EmitterId> {
+        self.0.environment()
+    }
+
+    fn sensor(&self) -> &Self::Sensor {
+        self.0.sensor()
+    }
+
+    fn bounding_sphere(&self) -> (Vec3A, f32) {
+        self.0.bounding_sphere()
+    }
+}
+
+impl<V: Vertex> Vertex for OneModeVertex<V> {
+    type Spectrum = V::Spectrum;
+
+    fn point(&self) -> &SurfacePoint {
+        self.0.point()
+    }
+
+    fn shading_normal(&self) -> Vec3A {
+        self.0.shading_normal()
+    }
+
+    fn wo(&self) -> Vec3A {
+        self.0.wo()
+    }
+
+    fn emitter(&self) -> Option<EmitterId> {
+        self.0.emitter()
+    }
+
+    fn emitted(&self) -> V::Spectrum {
+        self.0.emitted()
+    }
+
+    fn is_connectible(&self) -> bool {
+        self.0.is_connectible()
+    }
+
+    fn eval(&self, wi: Vec3A, _: TransportMode) -> V::Spectrum {
+        self.0.eval(wi, TransportMode::Radiance)
+    }
+
+    fn pdf_solid_angle(&self, wi: Vec3A, _: TransportMode) -> f32 {
+        self.0.pdf_solid_angle(wi, TransportMode::Radiance)
+    }
+
+    fn sample(&self, u: [f32; 3], _: TransportMode) -> Option<ScatterSample<V::Spectrum>> {
+        self.0.sample(u, TransportMode::Radiance)
+    }
+
+    fn albedo(&self) -> V::Spectrum {
+        self.0.albedo()
+    }
+
+    fn reversed(&self, wi: Vec3A) -> Self {
+        Self(self.0.reversed(wi))
+    }
+}
+
+/// Gives both techniques weights that sum to this instead of one.
+#[derive(Clone, Copy, Debug)]
+pub struct Unnormalised(pub f32);
+
+impl Heuristic<f32> for Unnormalised {
+    fn weight(&self, technique: usize, densities: &impl Densities<f32>) -> f32 {
+        self.0 * Balance.weight(technique, densities)
+    }
+}
+
+/// Chooses by one choice and claims the probabilities of another.
+#[derive(Clone, Copy, Debug)]
+pub struct Liar<A, B> {
+    /// Chooses.
+    pub chooses: A,
+    /// Whose probabilities are claimed.
+    pub claims: B,
+}
+
+impl<A: EmitterChoice, B: EmitterChoice> EmitterChoice for Liar<A, B> {
+    fn choose(&self, from: Option<&SurfacePoint>, u: f32) -> Option<ChosenEmitter> {
+        let id = self.chooses.choose(from, u)?.id;
+        Some(ChosenEmitter { id, probability: self.claims.probability(from, id) })
+    }
+
+    fn probability(&self, from: Option<&SurfacePoint>, id: EmitterId) -> f32 {
+        self.claims.probability(from, id)
+    }
+}

@@ -1,0 +1,27 @@
+//! How the statistical suites of the workspace share out its false-positive rate.
+
+use estimator_checks::assert_shares;
+
+/// Every suite of the workspace with its share of [`FALSE_POSITIVE_RATE`](estimator_checks::FALSE_POSITIVE_RATE).
+///
+/// Each package writes its share beside its tests; this table repeats them, so that their sum is checked when it is
+/// compiled. A test compares it with the sources.
+pub const SHARES: [(&str, f64); 5] = [
+    ("mis-heuristics", 1e-8),
+    ("qmc-sampling", 1e-7),
+    ("scene-core emitters", 1e-7),
+    ("scene-core materials", 1e-7),
+    ("workspace estimators", 5e-7),
+];
+
+const fn rates<const N: usize>(table: &[(&str, f64); N]) -> [f64; N] {
+    let mut rates = [0.0; N];
+    let mut i = 0;
+    while i < N {
+        rates[i] = table[i].1;
+        i += 1;
+    }
+    rates
+}
+
+const _: () = assert_shares(&rates(&SHARES));
