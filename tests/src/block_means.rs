@@ -20,7 +20,7 @@ impl Effort {
     /// Seconds for an image of 24 x 24 pixels, on one core.
     pub const QUICK: Self = Self { samples: 32, batches: 32, block: 6 };
     /// Minutes.
-    pub const LONG: Self = Self { samples: 1024, batches: 100, block: 4 };
+    pub const LONG: Self = Self { samples: 256, batches: 100, block: 4 };
 }
 
 /// Renders once per batch, on one thread, and takes means over blocks of pixels; each channel, and the whole image in

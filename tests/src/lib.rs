@@ -5,7 +5,7 @@
 //! - [`scenes`]: small scenes, each of which exercises one part of light transport.
 //! - [`planted`]: bugs that the tests must find.
 //!
-//! The quick forms run with `cargo test`; the long ones, with a hundred times the samples, by
+//! The quick forms run with `cargo test`; the long ones, with 25 times the samples, by
 //! `cargo test --release --workspace -- --ignored`.
 
 mod block_means;

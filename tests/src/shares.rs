@@ -6,11 +6,14 @@ use estimator_checks::assert_shares;
 ///
 /// Each package writes its share beside its tests; this table repeats them, so that their sum is checked when it is
 /// compiled. A test compares it with the sources.
-pub const SHARES: [(&str, f64); 5] = [
+pub const SHARES: [(&str, f64); 8] = [
     ("mis-heuristics", 1e-8),
     ("qmc-sampling", 1e-7),
+    ("scene-core closed forms", 1e-7),
     ("scene-core emitters", 1e-7),
+    ("scene-core foreign scene", 1e-8),
     ("scene-core materials", 1e-7),
+    ("scene-core vertices", 1e-8),
     ("workspace estimators", 5e-7),
 ];
 

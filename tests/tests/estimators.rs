@@ -2,7 +2,7 @@
 //!
 //! Images are compared block by block over independent seeds. The long forms are the same tests with more samples:
 //! `cargo test --release --workspace -- --ignored`.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::ops::ControlFlow;
 
