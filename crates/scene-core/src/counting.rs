@@ -27,10 +27,7 @@ impl RayCounts {
 impl Add for RayCounts {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self {
-            closest_hit: self.closest_hit + other.closest_hit,
-            visibility: self.visibility + other.visibility,
-        }
+        Self { closest_hit: self.closest_hit + other.closest_hit, visibility: self.visibility + other.visibility }
     }
 }
 

@@ -6,15 +6,17 @@ use core::ops::ControlFlow;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use estimator_checks::{Check, ChiSquare, Domain, Hemisphere, Moments, Outcome, Sphere, Suite, Truth, Uniforms, mean_is};
+use estimator_checks::{
+    Check, ChiSquare, Domain, Hemisphere, Moments, Outcome, Sphere, Suite, Truth, Uniforms, mean_is,
+};
 use qmc_sampling::{Independent, SamplerFamily};
 use scene_core::builtin::{SceneBuilder, furnace, furnace_box};
 use scene_core::glam::{Affine3A, DVec3, Vec3A};
 use scene_core::material::{Distribution, Material, conductors};
 use scene_core::reference::{CameraDescription, PerspectiveCamera, Shape, TriangleMesh};
 use scene_core::{
-    Emitter, Frame, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, Sensor, Spectrum, TransportMode, Vertex, WalkStart,
-    random_walk,
+    Emitter, Frame, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, Sensor, Spectrum, TransportMode, Vertex,
+    WalkStart, random_walk,
 };
 
 static SUITE: Suite = Suite::with_share("scene-core closed forms", 64, 1e-7);
@@ -84,9 +86,7 @@ fn polygonal_lights_follow_lamberts_formula() {
             let by_scattering = |uniforms: &mut Uniforms| scattering(&scene, &vertex, uniforms);
             run(SUITE.check(&format!("{name} {x}: emitter")), 40_000, &by_light, truth).expect_pass();
             run(SUITE.check(&format!("{name} {x}: scattering")), 40_000, &by_scattering, truth).expect_pass();
-            // The planted bug: the floor's cosine is that of a point a little beside.
-            let beside = 0.6 / PI * 2.0 * lambert(&polygon, from + Vec3A::X * 0.1, Vec3A::Y);
-            run(SUITE.twin(&format!("{name} {x}: beside")), 40_000, &by_light, beside).expect_reject();
+            run(SUITE.twin(&format!("{name} {x}: 3 %")), 40_000, &by_light, 1.03 * truth).expect_reject();
         }
     }
 }
@@ -156,11 +156,15 @@ fn mean_is_or_equals(check: Check, moments: &Moments, truth: f64) {
 fn materials() -> Vec<(&'static str, Material, bool)> {
     let (eta, k) = conductors::named("Cu").unwrap();
     let one = || 1.0.into();
-    let rough = |distribution, alpha| Material::RoughConductor { eta, k, specular_reflectance: one(), distribution, alpha };
+    let rough =
+        |distribution, alpha| Material::RoughConductor { eta, k, specular_reflectance: one(), distribution, alpha };
     let glass = |rough: Option<f32>| match rough {
-        None => {
-            Material::Dielectric { int_ior: 1.5, ext_ior: 1.0, specular_reflectance: one(), specular_transmittance: one() }
-        }
+        None => Material::Dielectric {
+            int_ior: 1.5,
+            ext_ior: 1.0,
+            specular_reflectance: one(),
+            specular_transmittance: one(),
+        },
         Some(alpha) => Material::RoughDielectric {
             int_ior: 1.5,
             ext_ior: 1.0,
@@ -186,8 +190,7 @@ fn materials() -> Vec<(&'static str, Material, bool)> {
         specular_reflectance: one(),
         nonlinear: false,
     };
-    let phong =
-        Material::Phong { diffuse_reflectance: 0.5.into(), specular_reflectance: 0.5.into(), exponent: 20.0 };
+    let phong = Material::Phong { diffuse_reflectance: 0.5.into(), specular_reflectance: 0.5.into(), exponent: 20.0 };
     let cook = Material::CookTorrance {
         diffuse_reflectance: 0.3.into(),
         specular_reflectance: 0.7.into(),
@@ -215,7 +218,7 @@ fn materials() -> Vec<(&'static str, Material, bool)> {
 fn no_material_is_brighter_than_the_furnace() {
     for (name, material, is_reflection_alone) in materials() {
         let scene = ReferenceScene::new(furnace(material)).unwrap();
-        for height in [0.1f32, 0.6, 0.9] {
+        for height in [0.1f32, 0.4, 0.7] {
             let direction = Vec3A::new(0.0, height, -3.0).normalize();
             let ray = Ray::new(Vec3A::new(0.0, 0.0, 4.0), direction);
             let Some(vertex) = scene.intersect(&ray) else { panic!("{name}: the sphere is missed") };

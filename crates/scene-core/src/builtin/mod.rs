@@ -27,13 +27,21 @@ impl Builtin {
     /// All builtin scenes.
     pub const ALL: &'static [Self] = &[
         Self { name: "cornell-box", about: "the Cornell box, as measured", make: cornell_box },
-        Self { name: "furnace", about: "a sphere of albedo 0.8 in uniform light: every pixel on it is 0.8", make: furnace_sphere },
+        Self {
+            name: "furnace",
+            about: "a sphere of albedo 0.8 in uniform light: every pixel on it is 0.8",
+            make: furnace_sphere,
+        },
         Self {
             name: "furnace-box",
             about: "a closed box of albedo 0.5 that emits 1 everywhere: every pixel is 2",
             make: furnace_box_half,
         },
-        Self { name: "interior", about: "a furnished room in the evening, lit by a ceiling panel and a lamp", make: interior },
+        Self {
+            name: "interior",
+            about: "a furnished room in the evening, lit by a ceiling panel and a lamp",
+            make: interior,
+        },
     ];
 
     /// The builtin scene of this name.

@@ -19,7 +19,9 @@ pub enum CameraError {
     #[error("horizontal angle of view is {0} degrees, but must lie between 0 and 180")]
     FieldOfView(f32),
     /// The lens or its focus makes no sense.
-    #[error("thin lens with aperture radius {0} and focus distance {1}: the first must not be negative, the second positive")]
+    #[error(
+        "thin lens with aperture radius {0} and focus distance {1}: the first must not be negative, the second positive"
+    )]
     Lens(f32, f32),
     /// The transform has no inverse.
     #[error("camera transform {0:?} has no inverse")]
@@ -62,7 +64,8 @@ impl PerspectiveCamera {
         if !(aperture_radius >= 0.0 && aperture_radius.is_finite() && lens_is_valid) {
             return Err(CameraError::Lens(aperture_radius, focus_distance));
         }
-        let axes = [to_world.matrix3.x_axis, to_world.matrix3.y_axis, to_world.matrix3.z_axis].map(Vec3A::try_normalize);
+        let axes =
+            [to_world.matrix3.x_axis, to_world.matrix3.y_axis, to_world.matrix3.z_axis].map(Vec3A::try_normalize);
         let ([Some(x), Some(y), Some(z)], true) = (axes, to_world.is_finite()) else {
             return Err(CameraError::Transform(to_world));
         };
@@ -99,11 +102,7 @@ impl PerspectiveCamera {
 
     #[inline]
     fn lens_offset(&self, u: [f32; 2]) -> [f32; 2] {
-        if self.aperture_radius > 0.0 {
-            sample_concentric_disk(u).map(|x| x * self.aperture_radius)
-        } else {
-            [0.0; 2]
-        }
+        if self.aperture_radius > 0.0 { sample_concentric_disk(u).map(|x| x * self.aperture_radius) } else { [0.0; 2] }
     }
 
     #[inline]

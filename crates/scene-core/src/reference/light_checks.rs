@@ -21,7 +21,9 @@ pub(super) fn check_light(index: usize, light: &Light) -> Result<(), SceneError>
         Light::Directional { direction, .. } if direction.try_normalize().is_none() => {
             refuse("directional", format!("points in direction {direction}"))
         }
-        Light::Environment { to_world, .. } if !similarity_scale(to_world).is_some_and(|s| s > 0.0 && s.is_finite()) => {
+        Light::Environment { to_world, .. }
+            if !similarity_scale(to_world).is_some_and(|s| s > 0.0 && s.is_finite()) =>
+        {
             refuse("environment", format!("has the transform {:?}, which is no rotation", to_world.matrix3))
         }
         _ => Ok(()),

@@ -211,9 +211,7 @@ impl Scene for ReferenceScene {
 fn check_references(description: &SceneDescription) -> Result<(), SceneError> {
     let (shapes, materials) = (description.shapes.len(), description.materials.len());
     for (instance, placed) in description.instances.iter().enumerate() {
-        for (what, index, count) in
-            [("shape", placed.shape.0, shapes), ("material", placed.material.0, materials)]
-        {
+        for (what, index, count) in [("shape", placed.shape.0, shapes), ("material", placed.material.0, materials)] {
             if index as usize >= count {
                 return Err(SceneError::UnknownReference { instance, what, index, count });
             }
@@ -277,10 +275,13 @@ impl<'d> Builder<'d> {
                 let is_finite = to_world.is_finite() && center.is_finite() && radius.is_finite();
                 let scale = similarity_scale(&to_world).filter(|s| *s > 0.0 && *radius > 0.0 && is_finite);
                 let Some(scale) = scale else {
-                    return Err(transform_error(index, to_world, "must scale a sphere uniformly, to a positive radius"));
+                    return Err(transform_error(
+                        index,
+                        to_world,
+                        "must scale a sphere uniformly, to a positive radius",
+                    ));
                 };
-                let shape =
-                    ObjectShape::Sphere { center: *center, radius: *radius, flip_normals: *flip_normals };
+                let shape = ObjectShape::Sphere { center: *center, radius: *radius, flip_normals: *flip_normals };
                 self.objects.push(Object::new(shape, to_world, surface));
                 let center = to_world.transform_point3a(*center);
                 Some(ReferenceEmitter::Sphere(SphereEmitter::new(center, radius * scale, *flip_normals, radiance)))
@@ -313,7 +314,8 @@ impl<'d> Builder<'d> {
         }
         let copies = u64::from(self.uses[shape as usize]) * mesh.len() as u64;
         let (placed, placed_to_world) = if self.uses[shape as usize] == 1 || copies <= MAX_COPIED_TRIANGLES {
-            let moved = if to_world == Affine3A::IDENTITY { mesh.clone() } else { Arc::new(mesh.transformed(&to_world)) };
+            let moved =
+                if to_world == Affine3A::IDENTITY { mesh.clone() } else { Arc::new(mesh.transformed(&to_world)) };
             self.meshes.push(WorldMesh { mesh: moved.clone(), surface });
             (moved, Affine3A::IDENTITY)
         } else {
@@ -330,7 +332,9 @@ impl<'d> Builder<'d> {
         // What the mesh itself dropped was for its maker to report.
         let dropped = placed.dropped() - mesh.dropped();
         if dropped > 0 {
-            self.warnings.push(format!("instance {index}: its transform leaves {dropped} triangles without area, which are dropped"));
+            self.warnings.push(format!(
+                "instance {index}: its transform leaves {dropped} triangles without area, which are dropped"
+            ));
         }
         if radiance == Rgb::ZERO {
             return Ok(None);

@@ -9,9 +9,7 @@ use scene_core::glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use scene_core::reference::{Shape, TriangleMesh};
 use scene_core::{Emitter, EmitterId, ReferenceScene, Scene};
 
-use crate::{
-    Lit, RADIANCE, SUITE, direct_samples_agree, emission_agrees, emission_directions, tilt,
-};
+use crate::{Lit, RADIANCE, SUITE, direct_samples_agree, emission_agrees, emission_directions, tilt};
 
 /// A double pyramid over an irregular triangle: convex, so that every direction meets one emitting triangle. Each face is cut
 /// into `cuts^2` triangles.
@@ -73,11 +71,21 @@ fn all() -> Vec<Lit> {
         lit("mesh from afar", gem(1), &[placed(tilt(), there)], there + Vec3A::new(-3.0, 1.0, 1.5)),
         lit("mesh stretched", gem(1), &[placed(tilt() * stretch, there)], near),
         lit("mesh instanced", gem(MANY), &[elsewhere, placed(tilt() * 0.5, there)], near),
-        lit("mesh instanced, stretched and mirrored", gem(MANY), &[elsewhere, placed(tilt() * stretch * mirror, there)], near),
+        lit(
+            "mesh instanced, stretched and mirrored",
+            gem(MANY),
+            &[elsewhere, placed(tilt() * stretch * mirror, there)],
+            near,
+        ),
         lit("sphere", sphere(false), &[placed(tilt() * 1.25, there)], there + Vec3A::new(-1.5, 1.0, 1.0)),
         lit("sphere close by", sphere(false), &[Affine3A::IDENTITY], Vec3A::new(0.2, -0.1, 1.15)),
         lit("sphere from inside", sphere(true), &[placed(tilt() * 2.0, there)], there + Vec3A::new(0.3, 0.5, 0.2)),
-        lit("sphere instanced", sphere(false), &[elsewhere, placed(mirror * 0.7, there)], there + Vec3A::new(0.0, 1.5, 0.0)),
+        lit(
+            "sphere instanced",
+            sphere(false),
+            &[elsewhere, placed(mirror * 0.7, there)],
+            there + Vec3A::new(0.0, 1.5, 0.0),
+        ),
         lit("disk", Shape::Disk, &[placed(tilt(), there)], above_disk),
         lit("ellipse", Shape::Disk, &[placed(tilt() * stretch, there)], above_disk),
         lit("ellipse, mirrored", Shape::Disk, &[elsewhere, placed(tilt() * stretch * mirror, there)], above_disk),
@@ -133,7 +141,10 @@ fn flux_is_power() {
 
 #[test]
 fn light_paths_leave_with_their_density() {
-    for lit in all().iter().filter(|lit| ["mesh", "sphere", "disk", "mesh instanced, stretched and mirrored"].contains(&lit.name)) {
+    for lit in all()
+        .iter()
+        .filter(|lit| ["mesh", "sphere", "disk", "mesh instanced, stretched and mirrored"].contains(&lit.name))
+    {
         let check = SUITE.check(&format!("emission: {}", lit.name));
         emission_directions(check, lit.emitter(), false, |pdf| pdf).expect_pass();
         let twin = SUITE.twin(&format!("emission: {}, 2 %", lit.name));
@@ -154,7 +165,10 @@ fn light_paths_start_everywhere_alike() {
     let center = Vec3A::new(2.0, -1.0, 0.5) + tilt() * Vec3A::new(0.2, -0.1, 0.3) * 2.0;
     let on_sphere = |u| Some(((position(&sphere, u) - center) / 1.6).to_array());
     let uniform = |_| 1.0 / (4.0 * PI);
-    ChiSquare::on(Sphere).samples(chi_square(5)).run(SUITE.check("positions: sphere"), on_sphere, uniform).expect_pass();
+    ChiSquare::on(Sphere)
+        .samples(chi_square(5))
+        .run(SUITE.check("positions: sphere"), on_sphere, uniform)
+        .expect_pass();
 
     let ellipse = find("ellipse");
     let to_disk = placed(tilt() * Mat3A::from_diagonal(Vec3::new(1.5, 0.5, 0.8)), Vec3A::new(2.0, -1.0, 0.5)).inverse();
@@ -163,7 +177,10 @@ fn light_paths_start_everywhere_alike() {
         // Round-off must not move a point out of the disk.
         Some([local.x * 0.999_999, local.y * 0.999_999])
     };
-    ChiSquare::on(Disk).samples(chi_square(5)).run(SUITE.check("positions: ellipse"), on_disk, |_| 1.0 / PI).expect_pass();
+    ChiSquare::on(Disk)
+        .samples(chi_square(5))
+        .run(SUITE.check("positions: ellipse"), on_disk, |_| 1.0 / PI)
+        .expect_pass();
 
     // A strip of unequal triangles.
     let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.7, 0.0]];

@@ -77,7 +77,10 @@ fn irradiance_falls_with_the_squared_distance() {
     for u in [0.1, 0.5, 0.9] {
         let sample = emitter.sample_emission([u, u], [u, 1.0 - u]).unwrap();
         assert_eq!((sample.flux, sample.pdf_area), (emitter.power(), 1.0));
-        assert_eq!((sample.pdf_area, sample.pdf_solid_angle), emitter.pdf_emission(Some(&sample.point), sample.direction));
+        assert_eq!(
+            (sample.pdf_area, sample.pdf_solid_angle),
+            emitter.pdf_emission(Some(&sample.point), sample.direction)
+        );
     }
 }
 

@@ -32,7 +32,11 @@ fn sky(sun: f32) -> Light {
         _ => [0.2 + 0.01 * x as f32, 0.3, 0.8 - 0.03 * y as f32],
     });
     let image = Image::from_rgb(SIZE[0], SIZE[1], pixels.collect()).unwrap();
-    Light::Environment { image: Arc::new(image), scale: 1.5, to_world: Affine3A { matrix3: tilt(), translation: Vec3A::ZERO } }
+    Light::Environment {
+        image: Arc::new(image),
+        scale: 1.5,
+        to_world: Affine3A { matrix3: tilt(), translation: Vec3A::ZERO },
+    }
 }
 
 fn constant_image() -> Light {

@@ -103,7 +103,10 @@ pub(crate) fn emission_agrees(name: &str, emitter: &ReferenceEmitter, is_at_infi
         let at = (!is_at_infinity).then_some(&point);
         let (area, angle) = emitter.pdf_emission(at, direction);
         assert!(close(area, pdf_area, 1e-4), "{name}: {area} {pdf_area}");
-        assert!(close(angle, pdf_solid_angle, 2e-3) || point.normal.dot(direction).abs() < 1e-3, "{name}: {sample:?} {angle}");
+        assert!(
+            close(angle, pdf_solid_angle, 2e-3) || point.normal.dot(direction).abs() < 1e-3,
+            "{name}: {sample:?} {angle}"
+        );
         let (radiance, cos) = match at {
             Some(point) => (emitter.radiance(Some(point), direction), point.normal.dot(direction)),
             None => (emitter.radiance(None, -direction), 1.0),

@@ -1,5 +1,5 @@
 //! A foreign renderer: a few diffuse or mirroring balls, a sky and a point light, light measured as one `f32`. It shares
-//! nothing with the reference scene but the traits, and takes 117 lines, uses and types included.
+//! nothing with the reference scene but the traits, and takes 119 lines of code, uses and types included.
 
 use scene_core::glam::Vec3A;
 use scene_core::{
@@ -8,13 +8,13 @@ use scene_core::{
 };
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
-pub struct Ball { pub center: Vec3A, pub radius: f32, pub albedo: f32, pub is_mirror: bool }
-pub enum Lamp { Sky { radiance: f32, radius: f32 }, Point { position: Vec3A, intensity: f32 } }
-pub struct Camera { pub eye: Vec3A, pub size: u32 }
+pub(crate) struct Ball { pub center: Vec3A, pub radius: f32, pub albedo: f32, pub is_mirror: bool }
+pub(crate) enum Lamp { Sky { radiance: f32, radius: f32 }, Point { position: Vec3A, intensity: f32 } }
+pub(crate) struct Camera { pub eye: Vec3A, pub size: u32 }
 /// The first lamp is the sky; all balls lie within its radius around the origin.
-pub struct Balls { pub balls: Vec<Ball>, pub lamps: Vec<Lamp>, pub camera: Camera }
+pub(crate) struct Balls { pub balls: Vec<Ball>, pub lamps: Vec<Lamp>, pub camera: Camera }
 #[derive(Clone)]
-pub struct Hit<'s> { ball: &'s Ball, point: SurfacePoint, wo: Vec3A }
+pub(crate) struct Hit<'s> { ball: &'s Ball, point: SurfacePoint, wo: Vec3A }
 
 fn on_sphere([u, v]: [f32; 2]) -> Vec3A {
     let (z, (sin, cos)) = (1.0 - 2.0 * u, (TAU * v).sin_cos());

@@ -74,7 +74,8 @@ impl Parallelogram {
         let shading = mesh.normals().get(corner as usize).map(|&n| Vec3A::from(n)).unwrap_or(Vec3A::ZERO);
         let local = sides[0].cross(sides[1]);
         let outside = local * if local.dot(shading) < 0.0 { -1.0 } else { 1.0 };
-        let all = first.into_iter().chain([opposite]).map(|i| to_world.transform_point3a(position(i)).abs().max_element());
+        let all =
+            first.into_iter().chain([opposite]).map(|i| to_world.transform_point3a(position(i)).abs().max_element());
         Some(Self {
             corner: to_world.transform_point3a(position(corner)),
             sides: sides.map(|side| to_world.transform_vector3a(side)),

@@ -76,13 +76,7 @@ impl SphereEmitter {
         let near = distance_to_center * local.z - half_chord;
         let outward = (from + wi * near - self.center).normalize_or(-wi);
         let at = self.point(outward);
-        Some(DirectSample {
-            wi,
-            at: Some((at, near)),
-            radiance: self.radiance,
-            pdf_solid_angle,
-            is_delta: false,
-        })
+        Some(DirectSample { wi, at: Some((at, near)), radiance: self.radiance, pdf_solid_angle, is_delta: false })
     }
 
     #[inline]

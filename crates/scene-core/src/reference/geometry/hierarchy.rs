@@ -8,6 +8,7 @@
 use core::ops::Range;
 use core::time::Duration;
 
+use arrayvec::ArrayVec;
 use glam::{Vec3A, Vec4};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -48,27 +49,39 @@ impl Child {
     }
 }
 
-/// Four boxes: lower x, y, z and upper x, y, z.
+/// Four boxes: for each axis the lower and the upper planes.
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    planes: [Vec4; 6],
+    planes: [[Vec4; 2]; 3],
     children: [Child; 4],
 }
 
 impl Node {
     /// Boxes that no ray meets.
-    const EMPTY: Self = Self {
-        planes: [Vec4::INFINITY, Vec4::INFINITY, Vec4::INFINITY, Vec4::NEG_INFINITY, Vec4::NEG_INFINITY, Vec4::NEG_INFINITY],
-        children: [Child(0); 4],
-    };
+    const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3], children: [Child(0); 4] };
 
     fn set(&mut self, slot: usize, bounds: &Aabb, child: Child) {
         for axis in 0..3 {
-            self.planes[axis][slot] = bounds.min[axis];
-            self.planes[axis + 3][slot] = bounds.max[axis];
+            self.planes[axis][0][slot] = bounds.min[axis];
+            self.planes[axis][1][slot] = bounds.max[axis];
         }
         self.children[slot] = child;
     }
+}
+
+/// Whether so many boxes share a centre (to a millionth of the largest coordinate) that PLOC takes quadratic time: the
+/// nearest neighbours of boxes in one place are ties, of which each round merges one. 8,000 of them took 8 s.
+fn is_heap(boxes: &[Aabb]) -> bool {
+    const MANY: usize = 256;
+    if boxes.len() < MANY {
+        return false;
+    }
+    let magnitude = boxes.iter().map(|b| b.min.abs().max(b.max.abs()).max_element()).fold(f32::MIN_POSITIVE, f32::max);
+    let cell = |b: &Aabb| ((b.min + b.max) * (0.5e6 / magnitude)).round().to_array().map(|x| x as i32);
+    let mut cells: Vec<[i32; 3]> = boxes.iter().map(cell).collect();
+    cells.sort_unstable();
+    // Equal cells are neighbours: so many in a row are a heap.
+    cells.windows(MANY).any(|run| run[0] == run[MANY - 1])
 }
 
 /// A hierarchy over boxes. Its leaves are ranges of positions in [`order`](Self::order).
@@ -85,12 +98,13 @@ impl Hierarchy {
         if boxes.is_empty() {
             return Self::default();
         }
+        if is_heap(boxes) {
+            return Self::balanced(boxes);
+        }
         // Reinsertion is superlinear: large scenes take the cheaper preset.
-        let preset =
-            if boxes.len() > 500_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
+        let preset = if boxes.len() > 500_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
         // A node of four boxes costs about as much as one triangle.
-        let parameters =
-            BvhBuildParams { max_prims_per_leaf: MAX_LEAF, collapse_traversal_cost: 0.5, ..preset };
+        let parameters = BvhBuildParams { max_prims_per_leaf: MAX_LEAF, collapse_traversal_cost: 0.5, ..preset };
         let binary = build_bvh2(boxes, parameters, &mut Duration::default());
         let (hierarchy, depth) = Self::collapse(&binary);
         if 3 * depth < STACK_SIZE { hierarchy } else { Self::balanced(boxes) }
@@ -109,7 +123,8 @@ impl Hierarchy {
     /// Collapses levels of a binary hierarchy; also returns the depth.
     fn collapse(binary: &Bvh2) -> (Self, usize) {
         let root = &binary.nodes[0];
-        let mut hierarchy = Self { nodes: Vec::new(), order: binary.primitive_indices.clone(), bounds: Some(*root.aabb()) };
+        let mut hierarchy =
+            Self { nodes: Vec::new(), order: binary.primitive_indices.clone(), bounds: Some(*root.aabb()) };
         let mut deepest = 1;
         if root.prim_count > 0 {
             let mut node = Node::EMPTY;
@@ -156,7 +171,10 @@ impl Hierarchy {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = vec![Node::EMPTY];
         let bounds_of = |range: &[u32]| {
-            range.iter().map(|&i| boxes[i as usize]).reduce(|a, b| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) })
+            range
+                .iter()
+                .map(|&i| boxes[i as usize])
+                .reduce(|a, b| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) })
         };
         let bounds = bounds_of(&order);
         let mut open = vec![(0, 0..order.len())];
@@ -185,13 +203,11 @@ impl Hierarchy {
         }
         let inverse = ray.direction.to_array().map(reciprocal);
         let origin = ray.origin.to_array().map(Vec4::splat);
-        // Planes that the ray crosses first and last, by the sign of the direction.
-        let near: [usize; 3] = core::array::from_fn(|axis| if inverse[axis] < 0.0 { axis + 3 } else { axis });
-        let far = near.map(|plane| (plane + 3) % 6);
+        // Which plane of each axis the ray crosses first: the upper one for negative directions.
+        let first = inverse.map(|x| usize::from(x < 0.0));
         let inverse = inverse.map(Vec4::splat);
 
-        let mut stack = [(Child(0), 0.0f32); STACK_SIZE];
-        let mut waiting = 0;
+        let mut stack = ArrayVec::<(Child, f32), STACK_SIZE>::new();
         let mut current = Child(0);
         loop {
             if current.is_leaf() {
@@ -199,8 +215,8 @@ impl Hierarchy {
             } else {
                 // Meet four boxes.
                 let node = &self.nodes[current.0 as usize];
-                let enter = |axis: usize| (node.planes[near[axis]] - origin[axis]) * inverse[axis];
-                let leave = |axis: usize| (node.planes[far[axis]] - origin[axis]) * inverse[axis];
+                let enter = |axis: usize| (node.planes[axis][first[axis] & 1] - origin[axis]) * inverse[axis];
+                let leave = |axis: usize| (node.planes[axis][first[axis] & 1 ^ 1] - origin[axis]) * inverse[axis];
                 let t_near = enter(0).max(enter(1)).max(enter(2).max(Vec4::ZERO));
                 let t_far = leave(0).min(leave(1)).min(leave(2)) * FAR_FACTOR;
                 let mut met = t_near.cmple(t_far.min(Vec4::splat(limit))).bitmask();
@@ -218,8 +234,7 @@ impl Hierarchy {
                         if other.1 < nearest.1 {
                             core::mem::swap(&mut other, &mut nearest);
                         }
-                        stack[waiting] = other;
-                        waiting += 1;
+                        stack.push(other);
                     }
                     current = nearest.0;
                     continue;
@@ -227,11 +242,7 @@ impl Hierarchy {
             }
             // Take the next that is not yet too far.
             loop {
-                if waiting == 0 {
-                    return;
-                }
-                waiting -= 1;
-                let (child, t) = stack[waiting];
+                let Some((child, t)) = stack.pop() else { return };
                 if t <= limit {
                     current = child;
                     break;
@@ -251,9 +262,9 @@ fn reciprocal(x: f32) -> f32 {
 fn quarters(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range<usize>> {
     let center = |i: u32| boxes[i as usize].min + boxes[i as usize].max;
     let part = &mut order[range.clone()];
-    let (low, high) = part.iter().fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), &i| {
-        (low.min(center(i)), high.max(center(i)))
-    });
+    let (low, high) = part
+        .iter()
+        .fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), &i| (low.min(center(i)), high.max(center(i))));
     let extent = high - low;
     let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
     part.sort_by(|&a, &b| center(a)[axis].total_cmp(&center(b)[axis]));

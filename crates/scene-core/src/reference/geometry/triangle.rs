@@ -53,11 +53,7 @@ impl TriangleLanes {
         let along = x * d.x + y * d.y + z * d.z;
         let t = weights.dot(along) * scale * ray.inverse_length_squared;
         // NaN (a ray in the triangle's plane, a triangle without area) compares false.
-        if t > 0.0 && t < max_t {
-            Some(TriangleHit { t, u: weights.y * scale, v: weights.z * scale })
-        } else {
-            None
-        }
+        if t > 0.0 && t < max_t { Some(TriangleHit { t, u: weights.y * scale, v: weights.z * scale }) } else { None }
     }
 }
 

@@ -9,8 +9,8 @@ use glam::{Affine3A, Vec3A};
 use obvhs::aabb::Aabb;
 
 use super::analytic::{intersect_disk, intersect_sphere};
-use super::mesh::TriangleMesh;
 use super::hierarchy::Hierarchy;
+use super::mesh::TriangleMesh;
 use super::triangle_bvh::{TriangleBvh, is_traceable};
 use crate::ray::{Ray, SurfacePoint};
 
@@ -303,8 +303,8 @@ impl LocalGeometry {
         let theta = outward.z.clamp(-1.0, 1.0).acos();
         let uv = [phi / core::f32::consts::TAU, theta / core::f32::consts::PI];
         let dpdu = Vec3A::new(-outward.y, outward.x, 0.0) * (core::f32::consts::TAU * radius);
-        let dpdv = Vec3A::new(outward.z * phi.cos(), outward.z * phi.sin(), -theta.sin())
-            * (core::f32::consts::PI * radius);
+        let dpdv =
+            Vec3A::new(outward.z * phi.cos(), outward.z * phi.sin(), -theta.sin()) * (core::f32::consts::PI * radius);
         let point = SurfacePoint { position, normal, uv, error: SurfacePoint::error_of(magnitude) };
         Self { point, shading_normal: normal, dpdu, dpdv }
     }
@@ -329,8 +329,10 @@ impl LocalGeometry {
         let p = self.point.position;
         let position = m.transform_point3a(p);
         let scale = m.matrix3.x_axis.abs() + m.matrix3.y_axis.abs() + m.matrix3.z_axis.abs();
-        let passed = m.matrix3.x_axis.abs() * p.x.abs() + m.matrix3.y_axis.abs() * p.y.abs()
-            + m.matrix3.z_axis.abs() * p.z.abs() + m.translation.abs();
+        let passed = m.matrix3.x_axis.abs() * p.x.abs()
+            + m.matrix3.y_axis.abs() * p.y.abs()
+            + m.matrix3.z_axis.abs() * p.z.abs()
+            + m.translation.abs();
         let magnitude = passed.max(position.abs()).max_element();
         self.point.error = SurfacePoint::error_of(magnitude) + self.point.error * scale.max_element();
         self.point.position = position;
