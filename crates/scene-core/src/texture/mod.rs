@@ -58,8 +58,13 @@ pub enum Texture {
 
 impl Texture {
     /// The value at surface parameters `uv`. Parameters that are not finite count as zero.
-    #[inline]
+    #[inline(always)]
     pub fn eval(&self, uv: [f32; 2]) -> Rgb {
+        // Most textures are constants.
+        if let Self::Constant(value) = self { *value } else { self.eval_varying(uv) }
+    }
+
+    fn eval_varying(&self, uv: [f32; 2]) -> Rgb {
         match self {
             Self::Constant(value) => *value,
             Self::Checkerboard { color0, color1, uv_transform } => {
