@@ -96,7 +96,7 @@ impl SurfacePoint {
         let target = other.offset_towards(-between);
         let segment = target - origin;
         let length = segment.length();
-        if !(length > 0.0) {
+        if length.is_nan() || length <= 0.0 {
             return Ray::new(origin, Vec3A::Z).up_to(0.0);
         }
         Ray::new(origin, segment / length).up_to(length * (1.0 - 4.0 * f32::EPSILON))

@@ -138,7 +138,7 @@ impl SceneBuilder {
     }
 
     /// A surface of revolution about the vertical axis through `base`: `profile` lists (radius, height) from the
-    /// bottom up; the outside is away from the axis. Smooth normals.
+    /// bottom up; the outside is away from the axis. Smooth normals. Closed if the first and last radius are zero.
     pub fn lathe(&mut self, material: MaterialId, base: Vec3A, profile: &[[f32; 2]], segments: u32) -> &mut Self {
         let rows = profile.len() as u32;
         let (mut positions, mut normals, mut uvs, mut triangles) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -147,7 +147,7 @@ impl SceneBuilder {
             let after = profile[(j + 1).min(profile.len() - 1)];
             let slope = [after[0] - before[0], after[1] - before[1]];
             for i in 0..=segments {
-                let (sin, cos) = (core::f32::consts::TAU * i as f32 / segments as f32).sin_cos();
+                let (sin, cos) = (core::f32::consts::TAU * (i % segments) as f32 / segments as f32).sin_cos();
                 positions.push((base + Vec3A::new(radius * cos, height, radius * sin)).to_array());
                 normals.push([slope[1] * cos, -slope[0], slope[1] * sin]);
                 uvs.push([i as f32 / segments as f32, j as f32 / (rows - 1).max(1) as f32]);

@@ -16,7 +16,7 @@ pub(crate) fn intersect_sphere(radius: f32, origin: Vec3A, direction: Vec3A, max
     let closest = o + d * (b / a);
     let r2 = f64::from(radius) * f64::from(radius);
     let discriminant = r2 - closest.dot(closest);
-    if !(discriminant >= 0.0) {
+    if discriminant.is_nan() || discriminant < 0.0 {
         return None;
     }
     let root = (a * discriminant).sqrt();
