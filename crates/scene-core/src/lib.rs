@@ -1,4 +1,8 @@
-//! Renderer-neutral scene traits, and a reference scene that implements them.
+#![cfg_attr(feature = "reference", doc = include_str!("../README.md"))]
+#![cfg_attr(
+    not(feature = "reference"),
+    doc = "The traits that light transport estimators are written against. With the feature `reference`: a scene that implements them."
+)]
 
 #[cfg(feature = "reference")]
 pub mod builtin;

@@ -59,10 +59,40 @@ impl TriangleLanes {
         // triangle's plane, a triangle without area) compares false.
         if !mixed & (t > 0.0) & (t < max_t) {
             Some(TriangleHit { t, u: weights.y * scale, v: weights.z * scale })
+        } else if mixed & passes_corner(edges) {
+            self.intersect_near_corner(ray, max_t)
         } else {
             None
         }
     }
+
+    /// As [`intersect`](Self::intersect), with the edge functions in double precision. Around a corner, round-off may tell each of
+    /// the triangles there that the ray passes beside it.
+    #[cold]
+    #[inline(never)]
+    fn intersect_near_corner(&self, ray: &TriangleRay, max_t: f32) -> Option<TriangleHit> {
+        let (x, y, z) = (self.x - ray.origin.x, self.y - ray.origin.y, self.z - ray.origin.z);
+        let [a, b, c]: [DVec3; 3] = core::array::from_fn(|i| Vec3A::new(x[i], y[i], z[i]).as_dvec3());
+        let d = ray.direction.as_dvec3();
+        let edge = |a: DVec3, b: DVec3| (b - a).cross(a + b).dot(d);
+        let weights = DVec3::new(edge(b, c), edge(c, a), edge(a, b));
+        if weights.cmplt(DVec3::ZERO).any() && weights.cmpgt(DVec3::ZERO).any() {
+            return None;
+        }
+        let scale = 1.0 / (weights.x + weights.y + weights.z);
+        let along = DVec3::new(a.dot(d), b.dot(d), c.dot(d));
+        let t = (weights.dot(along) * scale) as f32 * ray.inverse_length_squared;
+        let (u, v) = ((weights.y * scale) as f32, (weights.z * scale) as f32);
+        if t > 0.0 && t < max_t { Some(TriangleHit { t, u, v }) } else { None }
+    }
+}
+
+/// Whether two edge functions are near zero: the ray passes the corner between the edges.
+#[inline(always)]
+fn passes_corner(edges: Vec3A) -> bool {
+    let size = edges.abs();
+    let near = size.cmplt(Vec3A::splat(size.max_element() * NEAR_CORNER)).bitmask();
+    near & near.wrapping_sub(1) != 0
 }
 
 /// What of a ray the test of triangles needs.
