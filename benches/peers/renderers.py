@@ -84,7 +84,7 @@ class Lichtwerk:
 
     def render(self, spp, seed, image=True):
         out, stats = self.scratch / "lichtwerk.exr", self.scratch / "lichtwerk.json"
-        command = [self.program, "render", self.file, "--estimator", "path", "--spp", str(spp), "--size", self.size,
+        command = [self.program, "render", self.file, "--estimator", "path", "--sampler", "independent", "--spp", str(spp), "--size", self.size,
                    "--seed", str(seed), "--threads", str(self.threads), "--max-depth", str(self.max_depth),
                    "--out", str(out), "--stats", str(stats)]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -74,15 +74,15 @@ fn lights(b: &mut SceneBuilder) {
     let dark = b.diffuse(0.02, 0.02, 0.02);
     let metal = b.material(two_sided(metal("Al", 0.2)));
     // A panel that hangs from the ceiling and shines down.
-    b.cuboid(metal, v(-0.6, 2.53, 0.2), v(0.62, 0.02, 0.17), 0.0);
-    b.quad(dark, v(-1.2, 2.505, 0.05), v(1.2, 0.0, 0.0), v(0.0, 0.0, 0.3));
-    b.emit(Rgb::new(34.0, 29.0, 22.0));
+    b.cuboid(metal, v(-0.5, 2.53, -0.2), v(0.92, 0.02, 0.42), 0.0);
+    b.quad(dark, v(-1.4, 2.505, -0.6), v(1.8, 0.0, 0.0), v(0.0, 0.0, 0.8));
+    b.emit(Rgb::new(9.0, 7.7, 5.9));
     // An uplight in the corner: a stem and a bowl that hides the bulb.
     let base = v(-2.55, 0.0, 1.75);
-    let bowl = b.diffuse(0.55, 0.5, 0.42);
+    let bowl = b.diffuse(0.1, 0.09, 0.08);
     b.lathe(metal, base, &[[0.14, 0.0], [0.14, 0.02], [0.015, 0.03], [0.015, 1.7]], 48);
     b.lathe(bowl, base, &[[0.015, 1.7], [0.08, 1.72], [0.17, 1.78], [0.22, 1.87]], 48);
-    b.sphere(dark, base + v(0.0, 1.8, 0.0), 0.06).emit(Rgb::new(190.0, 130.0, 72.0));
+    b.sphere(dark, base + v(0.0, 1.86, 0.0), 0.12).emit(Rgb::new(44.0, 30.0, 17.0));
     // A glowing ball on the sideboard.
     b.sphere(dark, v(-2.68, 0.95, -0.6), 0.11).emit(Rgb::new(14.0, 8.2, 3.6));
 }
@@ -166,7 +166,7 @@ fn bookshelf(b: &mut SceneBuilder, wood: crate::reference::MaterialId) {
 
 fn table_ware(b: &mut SceneBuilder) {
     let brass = b.material(two_sided(metal("Au", 0.12)));
-    let chrome = b.material(two_sided(metal("Cr", 0.02)));
+    let chrome = b.material(two_sided(metal("Cr", 0.1)));
     let porcelain = b.material(lacquer(0.78, 0.78, 0.76, 0.05));
     let glass = b.material(Material::Dielectric {
         int_ior: 1.5,
