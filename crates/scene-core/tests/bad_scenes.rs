@@ -1,6 +1,8 @@
 //! Bad input: every error with its message, what is dropped with a warning, and what is merely odd.
 
 #![cfg(feature = "reference")]
+// Helper functions of tests may unwrap.
+#![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
 use std::time::Instant;

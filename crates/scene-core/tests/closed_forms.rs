@@ -1,6 +1,8 @@
 //! Scenes whose light is known in closed form: polygonal lights, furnaces, and the rays of the camera.
 
 #![cfg(feature = "reference")]
+// Helper functions of tests may unwrap.
+#![allow(clippy::unwrap_used)]
 
 use core::ops::ControlFlow;
 use std::f64::consts::PI;

@@ -1,5 +1,8 @@
 //! A foreign renderer implements the traits in about a hundred lines (`foreign/scene.rs`) and renders what is known in closed form.
 
+// Helper functions of tests may unwrap.
+#![allow(clippy::unwrap_used)]
+
 mod foreign {
     // The lines are counted: one method a line where it fits.
     #[rustfmt::skip]

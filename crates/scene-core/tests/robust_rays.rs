@@ -2,6 +2,8 @@
 //! origin, at small and large scales, for triangles, instances, spheres and disks.
 
 #![cfg(feature = "reference")]
+// Helper functions of tests may unwrap.
+#![allow(clippy::unwrap_used)]
 
 use std::f32::consts::TAU;
 use std::sync::Arc;

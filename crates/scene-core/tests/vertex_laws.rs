@@ -1,6 +1,8 @@
 //! The reference scene's vertices keep the laws of the trait `Vertex`, where shading and geometric normals differ too.
 
 #![cfg(feature = "reference")]
+// Helper functions of tests may unwrap.
+#![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
 

@@ -215,3 +215,24 @@ fn dark_and_degenerate_points_see_nothing() {
         }
     }
 }
+
+/// Two triangles that look like a parallelogram but face opposite sides, and one with vertex normals that turn it around.
+#[test]
+fn halves_may_face_opposite_sides() {
+    let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    for (normals, triangles) in [
+        (vec![], vec![[0, 1, 2], [0, 3, 2]]),
+        (vec![], vec![[0, 1, 2], [0, 2, 3]]),
+        (vec![[0.0, 0.0, -1.0]; 4], vec![[0, 1, 2], [0, 2, 3]]),
+    ] {
+        let mesh = TriangleMesh::new(positions.clone(), normals, vec![], triangles).unwrap();
+        let lit = lit("halves", Shape::Mesh(Arc::new(mesh)), &[Affine3A::IDENTITY], Vec3A::Z);
+        for k in 0..100 {
+            let u = [(0.2 + k as f32 * 0.37).fract(), (0.1 + k as f32 * 0.61).fract()];
+            let point = lit.emitter().sample_emission(u, [0.3, 0.4]).unwrap().point;
+            let hit = lit.scene.intersect(&scene_core::Ray::new(point.position + point.normal, -point.normal)).unwrap();
+            use scene_core::Vertex;
+            assert_eq!((hit.point().normal, hit.emitted()), (point.normal, RADIANCE), "{point:?}");
+        }
+    }
+}

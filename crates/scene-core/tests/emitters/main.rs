@@ -2,6 +2,8 @@
 //! with each other, radiance and power with what is sampled.
 
 #![cfg(feature = "reference")]
+// Helper functions of tests may unwrap.
+#![allow(clippy::unwrap_used)]
 
 mod area;
 mod delta;

@@ -37,7 +37,8 @@ fn rows(kind: &str) -> Vec<Row> {
 
 /// Relative, with an absolute floor that no image shows.
 fn differs(a: f32, b: f32, relative: f32) -> bool {
-    !((a - b).abs() <= relative * b.abs() + 2e-6)
+    let error = (a - b).abs();
+    error.is_nan() || error > relative * b.abs() + 2e-6
 }
 
 fn any_differs(a: Rgb, b: Rgb, relative: f32) -> bool {

@@ -71,9 +71,16 @@ impl Parallelogram {
         if gap.length() > 1e-5 * (sides[0].length() + sides[1].length()) {
             return None;
         }
-        let shading = mesh.normals().get(corner as usize).map(|&n| Vec3A::from(n)).unwrap_or(Vec3A::ZERO);
+        // Both triangles must face the same side, and so must the vertex normals, which decide on it where there are any.
         let local = sides[0].cross(sides[1]);
-        let outside = local * if local.dot(shading) < 0.0 { -1.0 } else { 1.0 };
+        let [a, b, c] = second.map(position);
+        let normals = first.into_iter().chain(second).filter_map(|i| mesh.normals().get(i as usize));
+        let turns: Vec<f32> = normals.map(|&n| local.dot(Vec3A::from(n))).collect();
+        let (is_back, is_front) = (turns.iter().any(|&turn| turn < 0.0), turns.iter().any(|&turn| turn > 0.0));
+        if (is_back && is_front) || (!is_back && !is_front && (b - a).cross(c - a).dot(local) < 0.0) {
+            return None;
+        }
+        let outside = if is_back { -local } else { local };
         let all =
             first.into_iter().chain([opposite]).map(|i| to_world.transform_point3a(position(i)).abs().max_element());
         Some(Self {
