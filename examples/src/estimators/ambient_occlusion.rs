@@ -20,12 +20,7 @@ pub struct AmbientOcclusion {
 }
 
 impl CameraEstimator for AmbientOcclusion {
-    fn radiance<S: Scene>(
-        &self,
-        scene: &S,
-        ray: Ray,
-        sampler: &mut impl Sampler,
-    ) -> (S::Spectrum, Option<FirstHit>) {
+    fn radiance<S: Scene>(&self, scene: &S, ray: Ray, sampler: &mut impl Sampler) -> (S::Spectrum, Option<FirstHit>) {
         let Some(vertex) = scene.intersect(&ray) else { return (S::Spectrum::ZERO, None) };
         let first_hit = Some(FirstHit::new(&ray, &vertex));
         let normal = vertex.shading_normal();

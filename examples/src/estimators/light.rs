@@ -34,12 +34,7 @@ pub struct LightTracer<C> {
 
 impl<C: EmitterChoice + Sync> LightEstimator for LightTracer<C> {
     #[inline]
-    fn trace<S: Scene>(
-        &self,
-        scene: &S,
-        sampler: &mut impl Sampler,
-        mut splat: impl FnMut([f32; 2], S::Spectrum),
-    ) {
+    fn trace<S: Scene>(&self, scene: &S, sampler: &mut impl Sampler, mut splat: impl FnMut([f32; 2], S::Spectrum)) {
         // Emit.
         let choose = sampler.next_1d();
         let (u_position, u_direction) = (sampler.next_2d(), sampler.next_2d());

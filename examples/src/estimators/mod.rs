@@ -37,24 +37,14 @@ impl FirstHit {
 /// An estimator that starts at the sensor: one ray gives one sample of a pixel.
 pub trait CameraEstimator: Sync {
     /// An estimate of the radiance that arrives along `ray`, and what the ray hit first.
-    fn radiance<S: Scene>(
-        &self,
-        scene: &S,
-        ray: Ray,
-        sampler: &mut impl Sampler,
-    ) -> (S::Spectrum, Option<FirstHit>);
+    fn radiance<S: Scene>(&self, scene: &S, ray: Ray, sampler: &mut impl Sampler) -> (S::Spectrum, Option<FirstHit>);
 }
 
 /// An estimator that starts at the emitters: one path gives values for any pixels.
 pub trait LightEstimator: Sync {
     /// Traces one light path; calls `splat` with raster positions and values. The mean over all paths, times the
     /// reconstruction filter, is the image.
-    fn trace<S: Scene>(
-        &self,
-        scene: &S,
-        sampler: &mut impl Sampler,
-        splat: impl FnMut([f32; 2], S::Spectrum),
-    );
+    fn trace<S: Scene>(&self, scene: &S, sampler: &mut impl Sampler, splat: impl FnMut([f32; 2], S::Spectrum));
 }
 
 /// No light paths.

@@ -2,9 +2,7 @@
 
 use mis_heuristics::Heuristic;
 use qmc_sampling::Sampler;
-use scene_core::{
-    Emitter, EmitterChoice, Ray, RussianRoulette, Scene, Spectrum, SurfacePoint, TransportMode, Vertex,
-};
+use scene_core::{Emitter, EmitterChoice, Ray, RussianRoulette, Scene, Spectrum, SurfacePoint, TransportMode, Vertex};
 
 use super::{CameraEstimator, FirstHit};
 
@@ -88,8 +86,7 @@ impl<H: Heuristic<f32> + Sync, C: EmitterChoice + Sync> PathTracer<H, C> {
             return unlit;
         }
         let pdf_light = chosen.probability * light.pdf_solid_angle;
-        let weight =
-            if light.is_delta { 1.0 } else { self.heuristic.weight(LIGHT, &[pdf_light, pdf_scattering]) };
+        let weight = if light.is_delta { 1.0 } else { self.heuristic.weight(LIGHT, &[pdf_light, pdf_scattering]) };
         let value = scattered * light.radiance * (weight / pdf_light);
         if value.is_black() {
             return unlit;

@@ -13,7 +13,9 @@ use scene_core::{ReferenceScene, RussianRoulette, Scene};
 use super::{Failure, RenderArguments, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, LightSelection};
 use crate::estimators::{AmbientOcclusion, FirstEvent, LightTracer, NoLightPaths, PathTracer};
-use crate::output::{Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json};
+use crate::output::{
+    Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
+};
 use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering};
 
 /// The estimators.

@@ -107,7 +107,10 @@ where
     ///
     /// # Errors
     /// If the image has no pixels or too many, or threads cannot be started.
-    pub fn render(&self, mut observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send) -> Result<Rendering, RenderError> {
+    pub fn render(
+        &self,
+        mut observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Rendering, RenderError> {
         let [width, height] = self.scene.sensor().resolution();
         let mut film = Film::new(width, height)?;
         let pool = rayon::ThreadPoolBuilder::new()
