@@ -256,3 +256,29 @@ fn offsets_are_small() {
         }
     }
 }
+
+/// Rays that lie exactly in the planes of axis-aligned edges, where boxes and triangles end. (On the outermost edges they may
+/// hit or miss.)
+#[test]
+fn axis_aligned_rays_hit_axis_aligned_edges() {
+    let mut b = SceneBuilder::new("tiles");
+    let grey = b.diffuse(0.5, 0.5, 0.5);
+    let tiles = (0..64).map(|k| Vec3A::new((k % 8) as f32 - 4.0, (k / 8) as f32 - 4.0, 0.0));
+    let quads: Vec<[Vec3A; 4]> = tiles.map(|p| [p, p + Vec3A::X, p + Vec3A::X + Vec3A::Y, p + Vec3A::Y]).collect();
+    b.quads(grey, &quads);
+    let scene = ReferenceScene::new(b.finish()).unwrap();
+    for k in 1..64 {
+        for l in 1..64 {
+            let at = |i: i32| -4.0 + i as f32 / 8.0;
+            for z in [-1.0f32, 1.0] {
+                let origin = Vec3A::new(at(k), at(l), z);
+                for direction in [Vec3A::new(0.0, 0.0, -z), Vec3A::new(-0.0, 0.0, -z), Vec3A::new(-0.0, -0.0, -z)] {
+                    let ray = Ray::new(origin, direction);
+                    let is_hit = scene.intersect(&ray).is_some();
+                    assert_eq!(is_hit, scene.occluded(&ray));
+                    assert!(is_hit, "{ray:?}");
+                }
+            }
+        }
+    }
+}
