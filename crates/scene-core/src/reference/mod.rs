@@ -1,5 +1,5 @@
 //! The reference scene: meshes, spheres and disks, materials, emitters and a perspective camera behind the
-//! [traits](crate::traits).
+//! traits of this crate ([`Scene`](crate::Scene) and its like).
 
 mod camera;
 mod description;
