@@ -2,7 +2,7 @@
 
 /// Whether this process, and so those it starts, ignores SIGINT, as shells make their background jobs do: then the
 /// program leaves it ignored too, and there is nothing to test. Says so.
-pub fn interrupts_are_ignored() -> bool {
+pub(crate) fn interrupts_are_ignored() -> bool {
     const SIGINT: u32 = 2;
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status
