@@ -2,8 +2,9 @@
 //!
 //! obvhs builds a binary hierarchy (PLOC with reinsertion, Meister and Bittner 2018 and 2017); here pairs of its levels are
 //! collapsed into nodes of four boxes, stored axis by axis, so that one ray meets four boxes at once. obvhs' own compressed
-//! eight-wide nodes (CWBVH) are made for GPUs: unpacking their bytes cost more than half of all traversal time here, boxes left
-//! before t = 1e-4 are dropped whatever the unit of length, and stacks deeper than 32 are overwritten.
+//! eight-wide nodes (CWBVH) are made for GPUs: with them, and triangles tested one edge after the other, a ray of the Cornell box took
+//! 910 instructions for the closest hit and 1,050 for any, against 610 and 470 now (callgrind). They also drop boxes left before
+//! t = 1e-4 whatever the unit of length, and overwrite stacks deeper than 32.
 
 use core::ops::Range;
 use core::time::Duration;
