@@ -66,17 +66,18 @@ impl<'a, S> Counting<'a, S> {
     }
 }
 
-impl<S: Scene> Scene for Counting<'_, S> {
+impl<'a, S: Scene> Scene for Counting<'a, S> {
     type Spectrum = S::Spectrum;
+    /// Borrows from the scene, not from the counter: vertices may outlive the task that found them.
     type Vertex<'s>
-        = S::Vertex<'s>
+        = S::Vertex<'a>
     where
         Self: 's;
     type Emitter = S::Emitter;
     type Sensor = S::Sensor;
 
     #[inline]
-    fn intersect(&self, ray: &Ray) -> Option<S::Vertex<'_>> {
+    fn intersect(&self, ray: &Ray) -> Option<S::Vertex<'a>> {
         self.closest_hit.set(self.closest_hit.get() + 1);
         self.scene.intersect(ray)
     }
@@ -104,5 +105,9 @@ impl<S: Scene> Scene for Counting<'_, S> {
 
     fn bounding_sphere(&self) -> (Vec3A, f32) {
         self.scene.bounding_sphere()
+    }
+
+    fn has_specular_surfaces(&self) -> bool {
+        self.scene.has_specular_surfaces()
     }
 }

@@ -115,6 +115,17 @@ impl<'m> Bsdf<'m> {
             || self.back.is_some_and(Surface::is_connectible)
     }
 
+    /// `f` if the BSDF is that constant where `wo` and `wi` are on one side, and zero elsewhere.
+    #[inline]
+    pub fn lambertian(&self, wo: Vec3A) -> Option<Rgb> {
+        match self.lobe {
+            Lobe::Diffuse(reflectance) if self.is_plain() && (wo.z > 0.0 || self.two_sided) => {
+                Some(reflectance * FRAC_1_PI)
+            }
+            _ => None,
+        }
+    }
+
     /// From 0 for Dirac deltas alone to 1 for diffuse: the smallest roughness of the other components, of the front side.
     pub fn roughness(&self) -> f32 {
         self.lobe.roughness()

@@ -253,6 +253,11 @@ impl CompiledMaterial {
         self.front.is_connectible() || self.back.as_ref().is_some_and(Surface::is_connectible)
     }
 
+    /// Whether it has a component that is a Dirac delta (a mask passes light by one).
+    pub fn is_specular(&self) -> bool {
+        !self.opacity.is_empty() || self.front.is_specular() || self.back.as_ref().is_some_and(Surface::is_specular)
+    }
+
     /// The albedo for mean textures at an angle of 60 degrees, both sides averaged if they differ: an estimate.
     pub fn mean_albedo(&self) -> Rgb {
         let wo = Vec3A::new(0.75f32.sqrt(), 0.0, 0.5);

@@ -67,6 +67,11 @@ impl Surface {
         !matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_))
     }
 
+    /// Whether it has a component that is a Dirac delta.
+    pub(super) fn is_specular(&self) -> bool {
+        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Plastic(_))
+    }
+
     #[inline]
     pub(super) fn resolve(&self, uv: [f32; 2]) -> Lobe<'_> {
         if let Self::Diffuse(reflectance) = self {

@@ -104,6 +104,7 @@ pub struct ReferenceScene {
     camera: PerspectiveCamera,
     bounding_sphere: (Vec3A, f32),
     triangles: u64,
+    has_specular_surfaces: bool,
     warnings: Vec<String>,
 }
 
@@ -138,6 +139,7 @@ impl ReferenceScene {
         for (index, material) in description.materials.into_iter().enumerate() {
             materials.push(material.compile().map_err(|error| SceneError::Material { index, error })?);
         }
+        let has_specular_surfaces = surfaces.iter().any(|surface| materials[surface.material as usize].is_specular());
         Ok(Self {
             name: description.name,
             world,
@@ -148,6 +150,7 @@ impl ReferenceScene {
             camera,
             bounding_sphere,
             triangles,
+            has_specular_surfaces,
             warnings,
         })
     }
@@ -205,6 +208,10 @@ impl Scene for ReferenceScene {
 
     fn bounding_sphere(&self) -> (Vec3A, f32) {
         self.bounding_sphere
+    }
+
+    fn has_specular_surfaces(&self) -> bool {
+        self.has_specular_surfaces
     }
 }
 

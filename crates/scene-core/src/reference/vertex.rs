@@ -145,4 +145,9 @@ impl Vertex for SceneVertex<'_> {
     fn reversed(&self, wi: Vec3A) -> Self {
         Self { wo: wi, wo_local: self.frame.to_local(wi), ..*self }
     }
+
+    #[inline]
+    fn lambertian(&self) -> Option<Rgb> {
+        if self.bent { None } else { self.bsdf.lambertian(self.wo_local) }
+    }
 }

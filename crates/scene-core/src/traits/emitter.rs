@@ -65,6 +65,14 @@ pub trait Emitter {
     fn power(&self) -> Self::Spectrum;
     /// Whether rays can never hit it: a Dirac delta in position or direction.
     fn is_delta(&self) -> bool;
+    /// Whether its light comes from infinity: [`DirectSample::at`] is `None`, and light paths start outside the scene.
+    fn is_infinite(&self) -> bool;
+    /// Whether every point of it emits the same radiance in all directions of its normal's side, and none on the other:
+    /// estimators may then look it up once per point. False if unknown.
+    #[inline]
+    fn is_lambertian(&self) -> bool {
+        false
+    }
     /// Light that arrives at `from`, unoccluded; nothing if the emitter cannot shine there.
     fn sample_direct(&self, from: Vec3A, u: [f32; 2]) -> Option<DirectSample<Self::Spectrum>>;
     /// Density with which [`sample_direct`](Self::sample_direct) returns `wi` at `from`, by solid angle, if the

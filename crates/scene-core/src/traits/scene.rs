@@ -20,7 +20,7 @@ pub trait Scene {
     /// What light is measured in.
     type Spectrum: Spectrum;
     /// A point on a surface with its scattering function; may borrow from the scene.
-    type Vertex<'s>: Vertex<Spectrum = Self::Spectrum>
+    type Vertex<'s>: Vertex<Spectrum = Self::Spectrum> + Send + Sync
     where
         Self: 's;
     /// A source of light.
@@ -46,6 +46,12 @@ pub trait Scene {
     /// Centre and radius of a sphere around all geometry (emission from infinity starts on it; also the
     /// length scale that scale-normalised parameters refer to).
     fn bounding_sphere(&self) -> (Vec3A, f32);
+
+    /// Whether any surface scatters by Dirac deltas. If it is known that none does, rays that are traced only for what
+    /// connections cannot reach may be short. True if unknown.
+    fn has_specular_surfaces(&self) -> bool {
+        true
+    }
 
     /// Whether the open segment between two surface points is free.
     fn visible(&self, a: &SurfacePoint, b: &SurfacePoint) -> bool {

@@ -88,6 +88,14 @@ pub trait Vertex: Clone {
     #[must_use]
     fn reversed(&self, wi: Vec3A) -> Self;
 
+    /// The constant `f`, in 1/sr, if in both modes [`eval`](Self::eval) is `f |cos(wi, geometric normal)|` for all `wi` on
+    /// the side of `wo`, zero on the other side, and there are no Dirac deltas: loops over many directions may then leave
+    /// `eval` out. `None` if it is not so, or unknown.
+    #[inline]
+    fn lambertian(&self) -> Option<Self::Spectrum> {
+        None
+    }
+
     /// [`eval`](Self::eval) and [`pdf_solid_angle`](Self::pdf_solid_angle) at once.
     #[inline]
     fn eval_pdf(&self, wi: Vec3A, mode: TransportMode) -> (Self::Spectrum, f32) {

@@ -1,5 +1,5 @@
 //! A foreign renderer: a few diffuse or mirroring balls, a sky and a point light, light measured as one `f32`. It shares
-//! nothing with the reference scene but the traits, and takes 119 lines of code, uses and types included.
+//! nothing with the reference scene but the traits, and takes 120 lines of code, uses and types included.
 
 use scene_core::glam::Vec3A;
 use scene_core::{
@@ -80,6 +80,7 @@ impl Emitter for Lamp {
         match self { Self::Sky { radiance, radius } => 4.0 * PI * PI * radius * radius * radiance, Self::Point { intensity, .. } => 4.0 * PI * intensity }
     }
     fn is_delta(&self) -> bool { matches!(self, Self::Point { .. }) }
+    fn is_infinite(&self) -> bool { matches!(self, Self::Sky { .. }) }
     fn sample_direct(&self, from: Vec3A, u: [f32; 2]) -> Option<DirectSample<f32>> {
         Some(match *self {
             Self::Sky { radiance, .. } => DirectSample { wi: on_sphere(u), at: None, radiance, pdf_solid_angle: 0.25 * FRAC_1_PI, is_delta: false },

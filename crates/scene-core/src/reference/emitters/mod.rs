@@ -73,6 +73,16 @@ impl Emitter for ReferenceEmitter {
     }
 
     #[inline]
+    fn is_infinite(&self) -> bool {
+        matches!(self, Self::Directional(_) | Self::Environment(_))
+    }
+
+    #[inline]
+    fn is_lambertian(&self) -> bool {
+        matches!(self, Self::Mesh(_) | Self::Sphere(_) | Self::Disk(_))
+    }
+
+    #[inline]
     fn sample_direct(&self, from: Vec3A, u: [f32; 2]) -> Option<DirectSample<Rgb>> {
         dispatch!(self, emitter => emitter.sample_direct(from, u))
     }
