@@ -1,0 +1,22 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod ambient;
+mod caustics;
+mod lights;
+mod observer;
+mod partition;
+mod robust;
+mod shading;
+mod shadow_rays;
+
+pub use ambient::openness;
+pub use caustics::{CausticMap, NoCaustics};
+pub use lights::{LightKind, LightTracing, VirtualPointLight, VirtualPointLights, geometry_term, photon_cloud};
+pub use mis_heuristics::PartitionError;
+pub use observer::Observer;
+pub use partition::{Partition, Threshold};
+pub use robust::{FinalGathering, Residual, RobustIgi};
+pub use shading::unshadowed;
+pub use shadow_rays::ShadowRays;
