@@ -3,12 +3,14 @@
 //! - [`estimators`]: what adds up paths, written against `scene-core`'s traits alone.
 //! - [`render`]: the loop over pixels, passes and threads.
 //! - [`choices`]: heuristics and light selection by name.
+//! - [`light_paths`]: light paths by name.
 //! - [`metrics`]: how far an image is from another.
 //! - [`output`]: files, the viewer, the terminal.
 //! - [`program`]: the subcommands of `lichtwerk`.
 
 pub mod choices;
 pub mod estimators;
+pub mod light_paths;
 pub mod metrics;
 pub mod output;
 pub mod program;

@@ -3,6 +3,7 @@
 mod ambient_occlusion;
 mod light;
 mod path;
+mod virtual_lights;
 
 use scene_core::{Ray, Scene, Spectrum, Vertex};
 
@@ -11,6 +12,7 @@ use qmc_sampling::Sampler;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
+pub use virtual_lights::VirtualLights;
 
 /// What a camera ray hit first, for auxiliary images.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

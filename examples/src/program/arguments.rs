@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::render::{EstimatorName, FilterName, SamplerName};
 use crate::choices::{AnyHeuristic, LightSelection};
+use crate::light_paths::LightPathSettings;
 
 /// Renders scenes with the estimators of the Lichtwerk crates, and measures them.
 #[derive(Debug, Parser)]
@@ -122,6 +123,9 @@ pub struct RenderArguments {
     /// Set a parameter of a Mitsuba file; may be given more than once.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
     pub definitions: Vec<(String, String)>,
+    /// Light paths.
+    #[command(flatten)]
+    pub light_paths: LightPathSettings,
 }
 
 /// Arguments of `diff`.

@@ -10,13 +10,16 @@ use scene_core::film::{Filter, FilterError, LayeredImage};
 use scene_core::reference::FilterDescription;
 use scene_core::{ReferenceScene, RussianRoulette, Scene};
 
+use vpl_gi::{LightTracing, Residual, RobustIgi};
+
 use super::{Failure, RenderArguments, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use crate::estimators::{AmbientOcclusion, FirstEvent, LightTracer, NoLightPaths, PathTracer};
+use crate::estimators::{AmbientOcclusion, FirstEvent, LightTracer, NoLightPaths, PathTracer, VirtualLights};
+use crate::light_paths::LightPathSettings;
 use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
-use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering};
+use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared};
 
 /// The estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -30,6 +33,10 @@ pub enum EstimatorName {
     Direct,
     /// Ambient occlusion.
     Ao,
+    /// Robust instant global illumination: virtual point lights where the geometry term is small, scattered rays elsewhere.
+    RobustIgi,
+    /// Virtual point lights alone. Biased where the threshold is not infinite, or there are mirrors and glass.
+    InstantRadiosity,
 }
 
 /// The samplers.
@@ -88,6 +95,8 @@ pub struct RenderSettings {
     pub filter: Filter,
     /// Distance of ambient occlusion, in units of the scene.
     pub ao_distance: f32,
+    /// Light paths, for the estimators that connect to them.
+    pub light_paths: LightPathSettings,
 }
 
 impl RenderSettings {
@@ -105,6 +114,7 @@ impl RenderSettings {
             rr_depth: 5,
             filter: Filter::BOX,
             ao_distance: f32::INFINITY,
+            light_paths: LightPathSettings::default(),
         }
     }
 }
@@ -152,6 +162,21 @@ fn estimate_with<S: Scene + Sync>(
             path.first_event = FirstEvent::SpecularOnly;
             let light = LightTracer { choice, max_depth: settings.max_depth, roulette };
             Job { scene, samplers, camera: &path, light: Some(&light), filter, budget, threads }.render(observe)
+        }
+        EstimatorName::RobustIgi | EstimatorName::InstantRadiosity => {
+            let drops = settings.estimator == EstimatorName::InstantRadiosity;
+            let eye = settings.light_paths.robust(scene, if drops { Residual::Drop } else { Residual::Scatter })?;
+            let eye = RobustIgi { max_depth: settings.max_depth, roulette, ..eye };
+            let light = LightTracing {
+                choice,
+                // The connection is a segment, and so is the camera's ray.
+                max_length: settings.max_depth.saturating_sub(2),
+                roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
+            };
+            let estimator = VirtualLights { eye, light, paths: settings.light_paths.light_paths };
+            let camera = Shared { estimator, sharing: settings.light_paths.sharing() };
+            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
         }
         EstimatorName::Ao => {
             let ao = AmbientOcclusion { distance: settings.ao_distance };
@@ -246,6 +271,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         max_depth,
         rr_depth: arguments.rr_depth,
         filter,
+        light_paths: arguments.light_paths.clone(),
         ao_distance: arguments.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
     };
     let mut watch = Watch::new(arguments, &settings, &name);

@@ -5,19 +5,21 @@
 //! bit for bit at any number of threads, and however the passes were cut.
 
 mod budget;
+mod camera;
 
 use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
-use qmc_sampling::{Sampler, SamplerFamily};
+use qmc_sampling::SamplerFamily;
 use rayon::prelude::*;
-use scene_core::film::{Film, FilmError, FilmTile, Filter, SplatBuffer};
+use scene_core::film::{Film, FilmError, Filter, SplatBuffer};
 use scene_core::{Counting, RayCounts, Scene, Sensor, Spectrum};
 
 pub use budget::Budget;
 use budget::Schedule;
+pub use camera::{CameraPass, PassContext, PassCounts, Shared, Sharing, SharingEstimator};
 
-use crate::estimators::{CameraEstimator, LightEstimator, NoLightPaths};
+use crate::estimators::{LightEstimator, NoLightPaths};
 
 /// Side of the squares of pixels that threads take.
 const TILE_SIZE: u32 = 16;
@@ -35,7 +37,7 @@ pub struct Job<'a, S, F, E, L = NoLightPaths> {
     pub scene: &'a S,
     /// Numbers for each path.
     pub samplers: &'a F,
-    /// Paths from the sensor, one per sample.
+    /// Paths from the sensor, one per sample: a [`CameraEstimator`](crate::estimators::CameraEstimator), or [`Shared`].
     pub camera: &'a E,
     /// Paths from the emitters, as many as there are pixels for each sample per pixel.
     pub light: Option<&'a L>,
@@ -86,6 +88,9 @@ pub enum RenderError {
     /// The image's size.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// The threshold of the geometry term.
+    #[error(transparent)]
+    Partition(#[from] vpl_gi::PartitionError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -100,7 +105,7 @@ impl<S, F, E, L> Job<'_, S, F, E, L>
 where
     S: Scene + Sync,
     F: SamplerFamily,
-    E: CameraEstimator,
+    E: CameraPass,
     L: LightEstimator,
 {
     /// Renders pass by pass until the budget is spent or `observe` breaks.
@@ -119,19 +124,23 @@ where
             .map_err(|error| RenderError::Threads { threads: self.threads, reason: error.to_string() })?;
         let start = Instant::now();
         let mut schedule = Schedule::new(self.budget);
-        let mut rays = RayCounts::default();
+        let (mut rays, mut light_paths) = (RayCounts::default(), 0);
+        let context = PassContext { scene: self.scene, samplers: self.samplers, filter: self.filter };
         let pixels = u64::from(width) * u64::from(height);
         pool.install(|| {
             while let Some(samples) = schedule.next_pass(start.elapsed().as_secs_f64()) {
-                rays += self.camera_pass(&mut film, samples.clone());
+                let camera = self.camera.add_samples(&context, &mut film, samples.clone())?;
+                rays += camera.rays;
+                light_paths += camera.light_paths;
                 if let Some(light) = self.light {
                     rays += self.light_pass(light, &mut film, samples.start * pixels..samples.end * pixels)?;
+                    light_paths += (samples.end - samples.start) * pixels;
                 }
                 let elapsed = start.elapsed();
                 let progress = Progress {
                     film: &film,
                     samples: samples.end,
-                    light_paths: if self.light.is_some() { samples.end * pixels } else { 0 },
+                    light_paths,
                     fraction: schedule.fraction(elapsed.as_secs_f64()),
                     elapsed,
                 };
@@ -142,35 +151,8 @@ where
             Ok::<(), RenderError>(())
         })?;
         let samples = schedule.done();
-        let light_paths = if self.light.is_some() { samples * pixels } else { 0 };
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
         Ok(Rendering { film, samples, light_paths, rays, seconds, threads })
-    }
-
-    /// Adds the given samples to every pixel.
-    fn camera_pass(&self, film: &mut Film, samples: Range<u64>) -> RayCounts {
-        let width = film.width();
-        let tiles: Vec<FilmTile<'_>> = film.tiles_mut(TILE_SIZE);
-        tiles.into_par_iter().map(|mut tile| self.camera_tile(&mut tile, width, samples.clone())).sum()
-    }
-
-    fn camera_tile(&self, tile: &mut FilmTile<'_>, width: u32, samples: Range<u64>) -> RayCounts {
-        let scene = Counting::new(self.scene);
-        for ([x, y], pixel) in tile.pixels_mut() {
-            let stream = u64::from(y) * u64::from(width) + u64::from(x);
-            for index in samples.clone() {
-                let mut sampler = self.samplers.sampler(stream, index);
-                let [dx, dy] = self.filter.sample(sampler.next_2d());
-                let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
-                let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
-                let (radiance, first_hit) = self.camera.radiance(&scene, ray.ray, &mut sampler);
-                pixel.add((radiance * ray.weight).to_rgb());
-                if let Some(hit) = first_hit {
-                    pixel.add_aov(hit.albedo, hit.normal, hit.depth);
-                }
-            }
-        }
-        scene.counts()
     }
 
     /// Traces the light paths with the given numbers, wave by wave, and adds their splats in order.

@@ -53,6 +53,16 @@ impl<V: Vertex> VirtualPointLights<V> {
         }
     }
 
+    /// Forgets all lights and keeps their memory.
+    pub fn clear(&mut self, paths: u32) {
+        self.lanes.clear();
+        self.intensities.clear();
+        self.is_lambertian.clear();
+        self.lights.clear();
+        self.remote.clear();
+        (self.paths, self.all_lambertian, self.longest) = (paths, true, 0);
+    }
+
     /// Adds a light. Those that connections cannot reach (specular vertices) are kept, and never connected to.
     pub fn push<S: Scene<Spectrum = V::Spectrum>>(&mut self, scene: &S, light: VirtualPointLight<V>) {
         let index = self.lights.len();
@@ -149,6 +159,12 @@ impl<V: Vertex> VirtualPointLights<V> {
             + self.is_lambertian.capacity()
             + self.lights.capacity() * size_of::<VirtualPointLight<V>>()
             + self.remote.capacity() * size_of::<u32>()
+    }
+}
+
+impl<V: Vertex> Default for VirtualPointLights<V> {
+    fn default() -> Self {
+        Self::new(0)
     }
 }
 

@@ -109,7 +109,7 @@ impl<V: Vertex> VirtualPointLights<V> {
         scene: &'s S,
         tracing: &LightTracing<C>,
         paths: u32,
-        mut sampler: impl FnMut(u32) -> R,
+        sampler: impl FnMut(u32) -> R,
     ) -> Self
     where
         S: Scene<Spectrum = V::Spectrum, Vertex<'s> = V>,
@@ -117,6 +117,24 @@ impl<V: Vertex> VirtualPointLights<V> {
         R: Sampler,
     {
         let mut lights = Self::new(paths);
+        lights.retrace(scene, tracing, paths, sampler);
+        lights
+    }
+
+    /// [`trace`](Self::trace) in place of what is there, whose memory is used again.
+    pub fn retrace<'s, S, C, R>(
+        &mut self,
+        scene: &'s S,
+        tracing: &LightTracing<C>,
+        paths: u32,
+        mut sampler: impl FnMut(u32) -> R,
+    ) where
+        S: Scene<Spectrum = V::Spectrum, Vertex<'s> = V>,
+        C: EmitterChoice,
+        R: Sampler,
+    {
+        let lights = self;
+        lights.clear(paths);
         let mut deltas = DeltaStarts::new(scene, paths);
         for path in 0..paths {
             let mut sampler = sampler(path);
@@ -139,7 +157,6 @@ impl<V: Vertex> VirtualPointLights<V> {
             lights
                 .push(scene, VirtualPointLight { kind, scale, length: 0, pdf_solid_angle: 0.0, after_specular: false });
         }
-        lights
     }
 }
 

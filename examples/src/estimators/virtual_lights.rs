@@ -1,0 +1,71 @@
+//! Virtual point lights: robust instant global illumination, and instant radiosity.
+
+use qmc_sampling::Sampler;
+use scene_core::{EmitterChoice, Ray, Scene, Vertex};
+use vpl_gi::{LightTracing, Observer, RobustIgi, VirtualPointLights};
+
+use super::FirstHit;
+use crate::render::SharingEstimator;
+
+/// [`RobustIgi`] with light paths that samples share.
+///
+/// With threshold infinity and the residual dropped or not it is instant radiosity.
+#[derive(Clone, Copy, Debug)]
+pub struct VirtualLights<C> {
+    /// The eye paths.
+    pub eye: RobustIgi,
+    /// The light paths.
+    pub light: LightTracing<C>,
+    /// Number of light paths that a sample sees.
+    pub paths: u32,
+}
+
+impl<C: EmitterChoice + Sync> SharingEstimator for VirtualLights<C> {
+    type Shared<V: Vertex + Send + Sync> = VirtualPointLights<V>;
+
+    fn paths(&self) -> u32 {
+        self.paths
+    }
+
+    fn share<'s, S: Scene, R: Sampler>(
+        &self,
+        scene: &'s S,
+        sampler: impl FnMut(u32) -> R,
+        used: Option<VirtualPointLights<S::Vertex<'s>>>,
+    ) -> VirtualPointLights<S::Vertex<'s>> {
+        let mut lights = used.unwrap_or_default();
+        lights.retrace(scene, &self.light, self.paths, sampler);
+        lights
+    }
+
+    fn radiance<S, V>(
+        &self,
+        scene: &S,
+        lights: &VirtualPointLights<V>,
+        ray: Ray,
+        sampler: &mut impl Sampler,
+    ) -> (S::Spectrum, Option<FirstHit>)
+    where
+        S: Scene,
+        V: Vertex<Spectrum = S::Spectrum> + Send + Sync,
+    {
+        let mut first = FirstVertex { ray, hit: None };
+        let radiance = self.eye.trace(scene, lights, None, ray, sampler, &mut first);
+        (radiance, first.hit)
+    }
+}
+
+/// Keeps what the camera sees.
+pub(super) struct FirstVertex {
+    pub(super) ray: Ray,
+    pub(super) hit: Option<FirstHit>,
+}
+
+impl<X: Vertex> Observer<X> for FirstVertex {
+    #[inline]
+    fn vertex(&mut self, length: u32, vertex: &X) {
+        if length == 1 {
+            self.hit = Some(FirstHit::new(&self.ray, vertex));
+        }
+    }
+}

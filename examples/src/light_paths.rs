@@ -1,0 +1,174 @@
+//! Light paths by the names of the command line: how many, who shares them, and what connections take of an edge.
+
+use clap::{Args, ValueEnum};
+use qmc_sampling::Interleaved;
+use scene_core::Scene;
+use vpl_gi::{FinalGathering, Partition, PartitionError, Residual, RobustIgi, ShadowRays, Threshold};
+
+use crate::render::Sharing;
+
+/// The forms of [`Partition`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum PartitionName {
+    /// Connections take edges with a geometry term below the threshold.
+    #[default]
+    Hard,
+    /// Connections take the geometry term up to the threshold.
+    Soft,
+    /// Connections take the share t / (t + G).
+    Balance,
+    /// Connections take edges longer than 1 / sqrt(t).
+    Distance,
+}
+
+impl PartitionName {
+    /// The partition with this threshold, in 1/length^2.
+    ///
+    /// # Errors
+    /// If the threshold is negative or NaN.
+    pub fn partition(self, threshold: f32) -> Result<Partition, PartitionError> {
+        match self {
+            Self::Hard => Partition::hard(threshold),
+            Self::Soft => Partition::soft(threshold),
+            Self::Balance => Partition::balance(threshold),
+            Self::Distance => Partition::distance(threshold),
+        }
+    }
+}
+
+/// Settings of the estimators that connect eye paths to light paths.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Light paths (robust-igi, instant-radiosity, bdpt)")]
+pub struct LightPathSettings {
+    /// Threshold of the geometry term: a number in units of 1/R^2, with the radius R of the scene; or `abs:T` in 1/length^2;
+    /// `inf` is allowed [default: 1, and inf for instant-radiosity].
+    #[arg(long, value_parser = parse_threshold)]
+    pub threshold: Option<Threshold>,
+    /// What of an edge connections take. What instant-radiosity leaves is lost, with robust-igi scattered rays take it.
+    #[arg(long, value_enum, default_value_t)]
+    pub partition: PartitionName,
+    /// Light paths that a sample is connected to.
+    #[arg(long, default_value_t = DEFAULT_LIGHT_PATHS, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub light_paths: u32,
+    /// Tile of pixels with different light paths, shared by all tiles; `none` gives every sample its own.
+    #[arg(long, default_value = "3x3", value_parser = parse_interleave)]
+    pub interleave: Interleave,
+    /// Shadow rays: `all`, `sampled:N` by contribution, or `ordered:TOLERANCE`, the brightest first.
+    #[arg(long, default_value = "all", value_parser = parse_shadow_rays)]
+    pub shadow_rays: ShadowRays,
+    /// Final gathering with this number of rays; 0 is none.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
+    pub gather: u32,
+}
+
+const DEFAULT_LIGHT_PATHS: u32 = 32;
+/// In units of 1/R^2.
+const DEFAULT_THRESHOLD: f32 = 1.0;
+
+/// The tile of `--interleave`, if there is one.
+pub type Interleave = Option<Interleaved>;
+
+impl Default for LightPathSettings {
+    fn default() -> Self {
+        Self {
+            threshold: None,
+            partition: PartitionName::Hard,
+            light_paths: DEFAULT_LIGHT_PATHS,
+            interleave: Interleaved::new(3, 3).ok(),
+            shadow_rays: ShadowRays::All,
+            gather: 0,
+        }
+    }
+}
+
+impl LightPathSettings {
+    /// Who shares light paths.
+    pub fn sharing(&self) -> Sharing {
+        self.interleave.map_or(Sharing::Independent, Sharing::Interleaved)
+    }
+
+    /// The partition for a scene.
+    ///
+    /// # Errors
+    /// If the threshold is negative or NaN.
+    pub fn partition<S: Scene>(&self, scene: &S, default: f32) -> Result<Partition, PartitionError> {
+        let threshold = self.threshold.unwrap_or(Threshold::normalised(default));
+        self.partition.partition(threshold.resolve(scene.bounding_sphere().1))
+    }
+
+    /// The robust estimator, with paths of any length.
+    ///
+    /// # Errors
+    /// If the threshold is negative or NaN.
+    pub fn robust<S: Scene>(&self, scene: &S, residual: Residual) -> Result<RobustIgi, PartitionError> {
+        let default = if residual == Residual::Drop { f32::INFINITY } else { DEFAULT_THRESHOLD };
+        let gathering = (self.gather > 0).then_some(FinalGathering { rays: self.gather });
+        let shadow_rays = self.shadow_rays;
+        Ok(RobustIgi { residual, shadow_rays, gathering, ..RobustIgi::new(self.partition(scene, default)?) })
+    }
+}
+
+fn parse_threshold(text: &str) -> Result<Threshold, String> {
+    let (number, make): (_, fn(f32) -> Threshold) = match text.strip_prefix("abs:") {
+        Some(number) => (number, Threshold::Absolute),
+        None => (text, Threshold::Normalised),
+    };
+    match number.parse::<f32>() {
+        Ok(value) if value >= 0.0 => Ok(make(value)),
+        _ => Err("expected a number that is not negative, 'inf', or 'abs:' and such a number".to_owned()),
+    }
+}
+
+fn parse_interleave(text: &str) -> Result<Interleave, String> {
+    if text == "none" {
+        return Ok(None);
+    }
+    let sides = text.split_once(['x', 'X']).and_then(|(x, y)| Some((x.parse::<u32>().ok()?, y.parse::<u32>().ok()?)));
+    match sides {
+        Some((x, y)) if (1..=64).contains(&x) && (1..=64).contains(&y) => {
+            Interleaved::new(x, y).map(Some).map_err(|error| error.to_string())
+        }
+        _ => Err("expected 'none' or COLUMNSxROWS, each from 1 to 64".to_owned()),
+    }
+}
+
+fn parse_shadow_rays(text: &str) -> Result<ShadowRays, String> {
+    let reason = || "expected 'all', 'sampled:N' with N at least 1, or 'ordered:TOLERANCE'".to_owned();
+    match text.split_once(':') {
+        None if text == "all" => Ok(ShadowRays::All),
+        Some(("sampled", count)) => match count.parse::<u32>() {
+            Ok(count @ 1..) => Ok(ShadowRays::Sampled { count }),
+            _ => Err(reason()),
+        },
+        Some(("ordered", tolerance)) => match tolerance.parse::<f32>() {
+            Ok(tolerance) if (0.0..1.0).contains(&tolerance) => Ok(ShadowRays::Ordered { tolerance, remainder: 1 }),
+            _ => Err(reason()),
+        },
+        _ => Err(reason()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_parsed() {
+        assert_eq!(parse_threshold("0.3"), Ok(Threshold::Normalised(0.3)));
+        assert_eq!(parse_threshold("abs:2"), Ok(Threshold::Absolute(2.0)));
+        assert_eq!(parse_threshold("inf"), Ok(Threshold::Normalised(f32::INFINITY)));
+        for wrong in ["", "-1", "nan", "abs:", "abs:-1", "t"] {
+            assert!(parse_threshold(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(parse_interleave("none"), Ok(None));
+        assert_eq!(parse_interleave("3x2").unwrap().map(|tile| tile.sides()), Some([3, 2]));
+        for wrong in ["", "3", "0x3", "3x65", "x"] {
+            assert!(parse_interleave(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(parse_shadow_rays("sampled:8"), Ok(ShadowRays::Sampled { count: 8 }));
+        assert_eq!(parse_shadow_rays("ordered:0.1"), Ok(ShadowRays::Ordered { tolerance: 0.1, remainder: 1 }));
+        for wrong in ["", "some", "sampled:0", "sampled", "ordered:2", "ordered:-1", "ordered:nan", "all:1"] {
+            assert!(parse_shadow_rays(wrong).is_err(), "{wrong}");
+        }
+    }
+}
