@@ -1,11 +1,11 @@
 //! One Sobol sequence through the whole image.
-use super::{Sampler, SamplerFamily, shuffle};
+use super::{Sampler, SamplerFamily, Split, pixel_of, shuffle};
 use crate::float::f32_from_bits;
 use crate::hash::{combine, mix64};
 use crate::image::{ImageSequence, SobolImage};
 use crate::scramble::{laine_karras, owen_hash_u32};
 use crate::sequences::SequenceError;
-use crate::sobol::{DIMENSIONS, reversed_group, sobol_bits, sobol_bits_u32};
+use crate::sobol::{DIMENSIONS, reversed_group, reversed_second, sobol_bits, sobol_bits_u32};
 
 /// One Owen-scrambled Sobol sequence through all the pixels of an image.
 ///
@@ -14,7 +14,8 @@ use crate::sobol::{DIMENSIONS, reversed_group, sobol_bits, sobol_bits_u32};
 /// sampled by one sequence of up to 1024 dimensions and 2^52 points, and errors of neighbouring pixels tend to cancel.
 /// The digits that choose the pixel are not scrambled, those below and all other dimensions are.
 ///
-/// Forks and dimensions from 1024 on restart at dimension 0, with the index shuffled and other random digits.
+/// Forks, splits and dimensions from 1024 on restart at dimension 0 of a sequence of their pixel, of which the batch counts
+/// the points, with the index shuffled and other random digits.
 /// Cost: per number eight lookups of four bytes, or per four eight of 16; more for indices above 2^32.
 ///
 /// ```
@@ -58,11 +59,14 @@ impl GlobalSobol {
 impl SamplerFamily for GlobalSobol {
     type Sampler = GlobalSobolSampler;
 
-    /// Streams beyond the pixels of the image wrap around; so does the index after 2^52 points.
+    /// Streams beyond the pixels of the image are randomisations of their own, of which the index counts the points.
+    /// After 2^52 points the sequence starts again.
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> GlobalSobolSampler {
-        let [width, height] = self.image.size().map(u64::from);
-        let pixel = [(stream % width) as u32, (stream / width % height) as u32];
+        let Some(pixel) = pixel_of(stream, self.image.size()) else {
+            let pattern = combine(combine(0, self.seed), stream);
+            return GlobalSobolSampler { pattern, index, dimension: 0, pixel_digits: 0 };
+        };
         self.at(self.image.index(pixel, index % self.image.batches()))
     }
 }
@@ -90,18 +94,25 @@ impl GlobalSobolSampler {
     #[inline]
     fn draw(&self, dimension: u32) -> f32 {
         let seed = (self.key(dimension / 4).wrapping_mul(SEED_MULTIPLIERS[(dimension % 4) as usize]) >> 32) as u32;
-        let bits = sobol_bits_u32(self.index, dimension);
-        f32_from_bits(if dimension < 2 { self.place(bits, seed) } else { owen_hash_u32(bits, seed) })
+        let bits = match dimension {
+            0 | 1 => self.place(dimension, seed),
+            _ => owen_hash_u32(sobol_bits_u32(self.index, dimension), seed),
+        };
+        f32_from_bits(bits)
     }
 
-    /// Scrambles the digits below those that choose the pixel.
+    /// A coordinate within the pixel: scrambles the digits below those that choose the pixel, of which the scramble depends.
     #[inline]
-    fn place(&self, bits: u32, seed: u32) -> u32 {
-        if self.pixel_digits == 0 {
-            return owen_hash_u32(bits, seed);
-        }
-        let pixel = bits >> (32 - self.pixel_digits);
-        owen_hash_u32(bits << self.pixel_digits, mix64((u64::from(pixel) << 32) | u64::from(seed)) as u32)
+    fn place(&self, dimension: u32, seed: u32) -> u32 {
+        let reversed = if dimension == 0 { self.index } else { reversed_second(self.index) };
+        let digits = self.pixel_digits;
+        let seed = if digits == 0 {
+            seed
+        } else {
+            let pixel = reversed & ((1 << digits) - 1);
+            mix64((pixel << 32) | u64::from(seed)) as u32
+        };
+        laine_karras((reversed >> digits) as u32, seed).reverse_bits()
     }
 
     /// The next four numbers. They start at a multiple of four dimensions, leaving out what is before.
@@ -128,8 +139,8 @@ impl GlobalSobolSampler {
             *s = laine_karras(p, seed).reverse_bits();
         }
         if group == 0 && self.pixel_digits > 0 {
-            for k in 0..2 {
-                scrambled[k] = self.place(point[k].reverse_bits(), seeds[k]);
+            for (k, s) in (0..2).zip(&mut scrambled) {
+                *s = self.place(k, seeds[k as usize]);
             }
         }
         scrambled.map(f32_from_bits)
@@ -141,6 +152,25 @@ impl GlobalSobolSampler {
         if self.dimension + n > DIMENSIONS {
             *self = self.fork(u32::MAX);
         }
+    }
+
+    /// The sampler of the `child`th of `children` points of each point, in a pattern of its own.
+    ///
+    /// Samplers of pixels leave the sequence of the image for one of their pixel, of which the batch counts the points: those
+    /// of one pixel are far from each other in the sequence of the image, and would be no better than random ones after
+    /// another shuffle.
+    #[inline]
+    fn branch(&self, pattern: u64, children: u64, child: u64) -> Self {
+        let digits = self.pixel_digits;
+        let low = |reversed: u64| reversed & ((1 << digits) - 1);
+        let (pattern, batch) = if digits == 0 {
+            (pattern, self.index)
+        } else {
+            let pixel = low(self.index) | (low(reversed_second(self.index)) << 32);
+            (combine(pattern, pixel), self.index >> (2 * digits))
+        };
+        let index = batch.wrapping_mul(children).wrapping_add(child);
+        Self { pattern, index: shuffle(index, mix64(!pattern)), dimension: 0, pixel_digits: 0 }
     }
 }
 
@@ -167,8 +197,15 @@ impl Sampler for GlobalSobolSampler {
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
-        let pattern = combine(self.pattern, u64::from(domain));
-        Self { pattern, index: shuffle(self.index, mix64(!pattern)), dimension: 0, pixel_digits: 0 }
+        self.branch(combine(self.pattern, u64::from(domain)), 1, 0)
+    }
+}
+
+impl Split for GlobalSobolSampler {
+    #[inline]
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let pattern = combine(combine(self.pattern, u64::from(domain)), u64::from(children));
+        self.branch(pattern, u64::from(children), u64::from(child))
     }
 }
 

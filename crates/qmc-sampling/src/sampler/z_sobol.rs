@@ -1,10 +1,10 @@
 //! Blue-noise error diffusion along the Z-order curve.
-use super::{Sampler, SamplerFamily};
+use super::{Sampler, SamplerFamily, Split, pixel_of};
 use crate::float::f32_from_bits;
-use crate::hash::combine;
-use crate::scramble::owen_hash_u32;
+use crate::hash::{combine, mix64};
+use crate::scramble::laine_karras;
 use crate::sequences::SequenceError;
-use crate::sobol::sobol_bits_u32;
+use crate::sobol::reversed_second;
 
 /// Owen-scrambled Sobol points handed out along the Z-order (Morton) curve of the image: neighbouring pixels get
 /// neighbouring parts of one sequence, so that their errors are of opposite signs and the noise is blue.
@@ -27,7 +27,7 @@ use crate::sobol::sobol_bits_u32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ZSobol {
-    width: u32,
+    size: [u32; 2],
     /// Of the number of paths per pixel.
     log2_paths: u32,
     /// Of the number of points on the curve.
@@ -51,20 +51,24 @@ impl ZSobol {
         if log2_points > 63 {
             return Err(too_large);
         }
-        Ok(Self { width, log2_paths, log2_points, seed })
+        Ok(Self { size: [width, height], log2_paths, log2_points, seed })
     }
 }
 
 impl SamplerFamily for ZSobol {
     type Sampler = ZSobolSampler;
 
-    /// Indices beyond the number of paths start other, independent points.
+    /// Indices beyond the number of paths start other, independent points. Streams beyond the pixels of the image are
+    /// randomisations of their own, with points in the order of the index, shuffled in base 4.
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> ZSobolSampler {
-        let [x, y] = [stream % u64::from(self.width), stream / u64::from(self.width)];
+        let Some([x, y]) = pixel_of(stream, self.size) else {
+            let pattern = combine(combine(combine(0, self.seed), stream), index >> 32);
+            return ZSobolSampler { morton: index & 0xffff_ffff, pattern, dimension: 0, log2_points: 32 };
+        };
         let round = index >> self.log2_paths;
         let place = index & ((1 << self.log2_paths) - 1);
-        let pixel = spread(x as u32) | (spread(y as u32) << 1);
+        let pixel = spread(x) | (spread(y) << 1);
         ZSobolSampler {
             morton: (pixel << self.log2_paths) | place,
             pattern: combine(combine(0, self.seed), round),
@@ -118,31 +122,37 @@ const PERMUTATIONS: [u8; 24] = {
     all
 };
 
-/// A hash of the digits above one, with the well mixed `key`; its high half is good.
+/// Moves a digit in base 4 by one of 24 permutations, which 12 random bits choose.
 #[inline]
-const fn digit_hash(above: u64, key: u64) -> u64 {
-    let hash = (above ^ key).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    (hash ^ (hash >> 32)).wrapping_mul(0x94d0_49bb_1331_11eb)
+const fn permuted(random: u64, digit: u64) -> u64 {
+    let choice = ((random & 0xfff) * 24) >> 12;
+    (PERMUTATIONS[choice as usize] >> (2 * digit)) as u64 & 3
 }
 
 impl ZSobolSampler {
     /// The index in the sequence: the permuted digits of the place on the curve, with the random number `key`.
+    ///
+    /// Each digit in base 4 is moved by a permutation that is hashed from the digits above; a single bit may be left over. One
+    /// hash of 64 bits serves two digits: 12 bits of it choose the permutation of the first one, and 12 bits for each
+    /// value of the first one that of the second.
     #[inline]
     fn index(&self, key: u64) -> u64 {
-        let odd = self.log2_points % 2;
         let mut index = 0;
         let mut shift = u32::from(self.log2_points);
-        // Permute digits in base 4, from the highest: one of 24 permutations, hashed from the digits above.
-        while shift > u32::from(odd) {
-            let hash = digit_hash(self.morton >> shift, key);
-            shift -= 2;
-            let choice = ((hash >> 32) * 24) >> 32;
-            let digit = (self.morton >> shift) & 3;
-            index |= (u64::from(PERMUTATIONS[choice as usize] >> (2 * digit)) % 4) << shift;
+        while shift >= 4 {
+            let hash = mix64((self.morton >> shift) ^ key);
+            shift -= 4;
+            let (first, second) = ((self.morton >> (shift + 2)) & 3, (self.morton >> shift) & 3);
+            let digits = (permuted(hash >> 48, first) << 2) | permuted(hash >> (12 * first), second);
+            index |= digits << shift;
         }
-        // A single bit may be left over.
-        if odd == 1 {
-            index |= (self.morton & 1) ^ (digit_hash(self.morton >> 1, key) >> 63);
+        if shift >= 2 {
+            let hash = mix64((self.morton >> shift) ^ key);
+            shift -= 2;
+            index |= permuted(hash >> 48, (self.morton >> shift) & 3) << shift;
+        }
+        if shift == 1 {
+            index |= (self.morton & 1) ^ (mix64((self.morton >> 1) ^ key) >> 63);
         }
         index
     }
@@ -160,20 +170,37 @@ impl Sampler for ZSobolSampler {
     #[inline]
     fn next_1d(&mut self) -> f32 {
         let (order, digits) = self.keys(1);
-        f32_from_bits(owen_hash_u32(sobol_bits_u32(self.index(order), 0), digits as u32))
+        f32_from_bits(laine_karras(self.index(order) as u32, digits as u32).reverse_bits())
     }
 
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
         let (order, digits) = self.keys(2);
         let index = self.index(order);
-        let seeds = [digits as u32, (digits >> 32) as u32];
-        [0, 1].map(|d| f32_from_bits(owen_hash_u32(sobol_bits_u32(index, d), seeds[d as usize])))
+        // The first two coordinates with their digits reversed.
+        let (x, y) = (index as u32, reversed_second(index) as u32);
+        [laine_karras(x, digits as u32), laine_karras(y, (digits >> 32) as u32)]
+            .map(|r| f32_from_bits(r.reverse_bits()))
     }
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
         Self { pattern: combine(self.pattern ^ 0x5bd1_e995, u64::from(domain)), dimension: 0, ..*self }
+    }
+}
+
+impl Split for ZSobolSampler {
+    /// The children go on along the curve below their path: stratified against each other, against those of the other
+    /// paths of the pixel, and against those of the pixels around. Counted as the next power of two.
+    #[inline]
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let bits = children.max(1).checked_next_power_of_two().map_or(31, u32::ilog2);
+        Self {
+            morton: (self.morton << bits) | (u64::from(child) & ((1 << bits) - 1)),
+            pattern: combine(combine(self.pattern ^ 0x5bd1_e995, u64::from(domain)), u64::from(children)),
+            dimension: 0,
+            log2_points: (u32::from(self.log2_points) + bits).min(63) as u8,
+        }
     }
 }
 
