@@ -9,6 +9,7 @@ mod budget;
 use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
+use qmc_sampling::sequences::SequenceError;
 use qmc_sampling::{Sampler, SamplerFamily};
 use rayon::prelude::*;
 use scene_core::film::{Film, FilmError, FilmTile, Filter, SplatBuffer};
@@ -25,7 +26,7 @@ const TILE_SIZE: u32 = 16;
 const LIGHT_PATHS_PER_TASK: u64 = 4096;
 /// Number of such tasks whose splats wait in memory at once.
 const LIGHT_TASKS_PER_WAVE: u64 = 64;
-/// The stream of the light paths' samplers, apart from those of the pixels.
+/// The stream of the light paths' samplers, apart from those of the pixels: no image has so many.
 const LIGHT_STREAM: u64 = 1 << 40;
 
 /// What to render, and how.
@@ -86,6 +87,9 @@ pub enum RenderError {
     /// The image's size.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// The image's size again: a sequence through all of it does not go that far.
+    #[error("the sampler cannot be used: {0}")]
+    Sampler(#[from] SequenceError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -160,6 +164,7 @@ where
             let stream = u64::from(y) * u64::from(width) + u64::from(x);
             for index in samples.clone() {
                 let mut sampler = self.samplers.sampler(stream, index);
+                // The first pair of numbers is the place in the pixel, also of sequences that run through the image.
                 let [dx, dy] = self.filter.sample(sampler.next_2d());
                 let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
                 let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
