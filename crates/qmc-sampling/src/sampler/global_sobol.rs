@@ -1,11 +1,11 @@
 //! One Sobol sequence through the whole image.
-use super::{Sampler, SamplerFamily, Split, pixel_of, shuffle};
+use super::{Sampler, SamplerFamily, Split, pixel_of, seeds, shuffle};
 use crate::float::f32_from_bits;
 use crate::hash::{combine, mix64};
 use crate::image::{ImageSequence, SobolImage};
-use crate::scramble::{laine_karras, owen_hash_u32};
+use crate::scramble::laine_karras;
 use crate::sequences::SequenceError;
-use crate::sobol::{DIMENSIONS, reversed_group, reversed_second, sobol_bits, sobol_bits_u32};
+use crate::sobol::{DIMENSIONS, reversed_group, reversed_second, reversed_u32, sobol_bits};
 
 /// One Owen-scrambled Sobol sequence through all the pixels of an image.
 ///
@@ -83,6 +83,9 @@ pub struct GlobalSobolSampler {
     pixel_digits: u32,
 }
 
+/// The number of groups of four dimensions that there are tables for.
+const GROUPS: u32 = 64;
+
 impl GlobalSobolSampler {
     /// The random number of a group of four dimensions.
     #[inline]
@@ -93,10 +96,10 @@ impl GlobalSobolSampler {
     /// A coordinate of the point.
     #[inline]
     fn draw(&self, dimension: u32) -> f32 {
-        let seed = (self.key(dimension / 4).wrapping_mul(SEED_MULTIPLIERS[(dimension % 4) as usize]) >> 32) as u32;
+        let seed = seeds(self.key(dimension / 4))[(dimension % 4) as usize];
         let bits = match dimension {
             0 | 1 => self.place(dimension, seed),
-            _ => owen_hash_u32(sobol_bits_u32(self.index, dimension), seed),
+            _ => laine_karras(reversed_u32(self.index, dimension), seed).reverse_bits(),
         };
         f32_from_bits(bits)
     }
@@ -115,18 +118,10 @@ impl GlobalSobolSampler {
         laine_karras((reversed >> digits) as u32, seed).reverse_bits()
     }
 
-    /// The next four numbers. They start at a multiple of four dimensions, leaving out what is before.
+    /// Four coordinates of the point, of a group below [`GROUPS`].
     #[inline]
-    pub fn next_4d(&mut self) -> [f32; 4] {
-        let group = self.dimension.div_ceil(4);
-        if group >= 64 {
-            let [a, b] = self.next_2d();
-            let [c, d] = self.next_2d();
-            return [a, b, c, d];
-        }
-        self.dimension = 4 * (group + 1);
-        let key = self.key(group);
-        let seeds = SEED_MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32);
+    fn group(&self, group: u32) -> [f32; 4] {
+        let digit_seeds = seeds(self.key(group));
         let mut point = reversed_group(self.index as u32, group);
         let high = self.index >> 32;
         if high != 0 {
@@ -135,15 +130,28 @@ impl GlobalSobolSampler {
             }
         }
         let mut scrambled = [0; 4];
-        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(seeds) {
+        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(digit_seeds) {
             *s = laine_karras(p, seed).reverse_bits();
         }
         if group == 0 && self.pixel_digits > 0 {
             for (k, s) in (0..2).zip(&mut scrambled) {
-                *s = self.place(k, seeds[k as usize]);
+                *s = self.place(k, digit_seeds[k as usize]);
             }
         }
         scrambled.map(f32_from_bits)
+    }
+
+    /// The next four numbers. They start at a multiple of four dimensions, leaving out what is before.
+    #[inline]
+    pub fn next_4d(&mut self) -> [f32; 4] {
+        let group = self.dimension.div_ceil(4);
+        if group >= GROUPS {
+            let [a, b] = self.next_2d();
+            let [c, d] = self.next_2d();
+            return [a, b, c, d];
+        }
+        self.dimension = 4 * (group + 1);
+        self.group(group)
     }
 
     /// Makes room for `n` more dimensions.
@@ -174,10 +182,6 @@ impl GlobalSobolSampler {
     }
 }
 
-/// Odd numbers without structure (from the digits of square roots of primes, as in SHA-512).
-const SEED_MULTIPLIERS: [u64; 4] =
-    [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
-
 impl Sampler for GlobalSobolSampler {
     #[inline]
     fn next_1d(&mut self) -> f32 {
@@ -190,9 +194,14 @@ impl Sampler for GlobalSobolSampler {
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
         self.reserve(2);
-        let pair = [self.draw(self.dimension), self.draw(self.dimension + 1)];
+        let (group, first) = (self.dimension / 4, (self.dimension % 4) as usize);
         self.dimension += 2;
-        pair
+        // Four at once are cheaper than two single ones, but for the first pair.
+        if 0 < group && group < GROUPS && first < 3 {
+            let four = self.group(group);
+            return [four[first], four[first + 1]];
+        }
+        [self.draw(self.dimension - 2), self.draw(self.dimension - 1)]
     }
 
     #[inline]
@@ -221,6 +230,15 @@ mod tests {
             let mut single = sampler;
             for _ in 0..70 {
                 assert_eq!(at_once.next_4d(), [0; 4].map(|_| single.next_1d()));
+            }
+            for skipped in 0..4 {
+                let (mut pairs, mut single) = (sampler, sampler);
+                for _ in 0..skipped {
+                    assert_eq!(pairs.next_1d(), single.next_1d());
+                }
+                for _ in 0..400 {
+                    assert_eq!(pairs.next_2d(), [0; 2].map(|_| single.next_1d()));
+                }
             }
         }
     }

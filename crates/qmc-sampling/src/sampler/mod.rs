@@ -8,6 +8,7 @@ mod lattice;
 #[cfg(feature = "openqmc")]
 mod open_qmc;
 mod owen_sobol;
+mod z_order;
 mod z_sobol;
 
 pub use from_sequence::{FromSequence, SequenceSampler};
@@ -80,6 +81,15 @@ fn shuffle(index: u64, key: u64) -> u64 {
     let high = index >> 32;
     let key = if high == 0 { key } else { crate::hash::combine(key, high) };
     (high << 32) | u64::from(crate::scramble::owen_hash_u32(index as u32, (key >> 32) as u32))
+}
+
+/// Four random numbers of a well mixed key.
+#[inline]
+fn seeds(key: u64) -> [u32; 4] {
+    // Odd numbers without structure, from the digits of square roots of primes, as in SHA-512.
+    const MULTIPLIERS: [u64; 4] =
+        [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
+    MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32)
 }
 
 /// Column and row of a stream, if it is a pixel of an image of this size.

@@ -1,6 +1,6 @@
 //! Padded, hashed Owen-scrambled Sobol points.
 use super::groups::{DrawGroup, Groups};
-use super::{Sampler, SamplerFamily, Split};
+use super::{Sampler, SamplerFamily, Split, seeds};
 use crate::float::f32_from_bits;
 use crate::hash::{combine, mix64};
 use crate::scramble::laine_karras;
@@ -85,13 +85,13 @@ impl Point {
     fn group(&self, group: u32) -> [f32; 4] {
         // Derive five seeds: one for the index, one per dimension.
         let key = mix64(self.pattern().wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-        let seeds = SEED_MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32);
+        let digit_seeds = seeds(key);
         // Shuffle the index, so that groups are not correlated by their common index.
         let index_reversed = laine_karras(self.index_reversed, key as u32);
         // Take the Sobol point and scramble its digits.
         let point = reversed_4d(index_reversed);
         let mut scrambled = [0; 4];
-        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(seeds) {
+        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(digit_seeds) {
             *s = laine_karras(p, seed).reverse_bits();
         }
         scrambled.map(f32_from_bits)
@@ -132,10 +132,6 @@ impl OwenSobolSampler {
         self.0.stream.group(group)
     }
 }
-
-/// Odd numbers without structure (from the digits of square roots of primes, as in SHA-512).
-const SEED_MULTIPLIERS: [u64; 4] =
-    [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
 
 impl Sampler for OwenSobolSampler {
     #[inline]

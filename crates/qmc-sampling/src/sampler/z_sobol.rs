@@ -1,7 +1,8 @@
 //! Blue-noise error diffusion along the Z-order curve.
-use super::{Sampler, SamplerFamily, Split, pixel_of};
+use super::z_order::{permute_base_4, z_order};
+use super::{Sampler, SamplerFamily, Split, pixel_of, seeds};
 use crate::float::f32_from_bits;
-use crate::hash::{combine, mix64};
+use crate::hash::combine;
 use crate::scramble::laine_karras;
 use crate::sequences::SequenceError;
 use crate::sobol::reversed_second;
@@ -64,123 +65,65 @@ impl SamplerFamily for ZSobol {
     fn sampler(&self, stream: u64, index: u64) -> ZSobolSampler {
         let Some([x, y]) = pixel_of(stream, self.size) else {
             let pattern = combine(combine(combine(0, self.seed), stream), index >> 32);
-            return ZSobolSampler { morton: index & 0xffff_ffff, pattern, dimension: 0, log2_points: 32 };
+            return ZSobolSampler::new(index & 0xffff_ffff, 32, pattern);
         };
         let round = index >> self.log2_paths;
         let place = index & ((1 << self.log2_paths) - 1);
-        let pixel = spread(x) | (spread(y) << 1);
-        ZSobolSampler {
-            morton: (pixel << self.log2_paths) | place,
-            pattern: combine(combine(0, self.seed), round),
-            dimension: 0,
-            log2_points: self.log2_points as u8,
-        }
+        let place = (z_order(x, y) << self.log2_paths) | place;
+        ZSobolSampler::new(place, self.log2_points, combine(combine(0, self.seed), round))
     }
-}
-
-/// Moves bit `i` to bit `2 i`.
-#[inline]
-fn spread(x: u32) -> u64 {
-    let mut x = u64::from(x);
-    for (shift, mask) in [
-        (16, 0x0000_ffff_0000_ffff),
-        (8, 0x00ff_00ff_00ff_00ff),
-        (4, 0x0f0f_0f0f_0f0f_0f0f),
-        (2, 0x3333_3333_3333_3333),
-        (1, 0x5555_5555_5555_5555),
-    ] {
-        x = (x | (x << shift)) & mask;
-    }
-    x
 }
 
 /// The sampler of [`ZSobol`], 24 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ZSobolSampler {
-    /// Place on the curve and number of the path.
-    morton: u64,
+    /// Place on the curve and number of the path, with the highest of their bits lowest.
+    reversed: u64,
     /// Hash of the seed and the forks.
     pattern: u64,
     dimension: u32,
     log2_points: u8,
 }
 
-/// The permutations of four things, two bits each.
-const PERMUTATIONS: [u8; 24] = {
-    let mut all = [0; 24];
-    let mut n = 0;
-    let mut code = 0_u16;
-    while code < 256 {
-        let (a, b, c, d) = (code & 3, (code >> 2) & 3, (code >> 4) & 3, code >> 6);
-        if (1 << a) | (1 << b) | (1 << c) | (1 << d) == 15 {
-            all[n] = code as u8;
-            n += 1;
-        }
-        code += 1;
-    }
-    all
-};
-
-/// Moves a digit in base 4 by one of 24 permutations, which 12 random bits choose.
-#[inline]
-const fn permuted(random: u64, digit: u64) -> u64 {
-    let choice = ((random & 0xfff) * 24) >> 12;
-    (PERMUTATIONS[choice as usize] >> (2 * digit)) as u64 & 3
-}
-
 impl ZSobolSampler {
-    /// The index in the sequence: the permuted digits of the place on the curve, with the random number `key`.
-    ///
-    /// Each digit in base 4 is moved by a permutation that is hashed from the digits above; a single bit may be left over. One
-    /// hash of 64 bits serves two digits: 12 bits of it choose the permutation of the first one, and 12 bits for each
-    /// value of the first one that of the second.
+    /// Point `place` of 2^`log2_points` on the curve.
     #[inline]
-    fn index(&self, key: u64) -> u64 {
-        let mut index = 0;
-        let mut shift = u32::from(self.log2_points);
-        while shift >= 4 {
-            let hash = mix64((self.morton >> shift) ^ key);
-            shift -= 4;
-            let (first, second) = ((self.morton >> (shift + 2)) & 3, (self.morton >> shift) & 3);
-            let digits = (permuted(hash >> 48, first) << 2) | permuted(hash >> (12 * first), second);
-            index |= digits << shift;
-        }
-        if shift >= 2 {
-            let hash = mix64((self.morton >> shift) ^ key);
-            shift -= 2;
-            index |= permuted(hash >> 48, (self.morton >> shift) & 3) << shift;
-        }
-        if shift == 1 {
-            index |= (self.morton & 1) ^ (mix64((self.morton >> 1) ^ key) >> 63);
-        }
-        index
+    const fn new(place: u64, log2_points: u32, pattern: u64) -> Self {
+        Self { reversed: reverse(place, log2_points), pattern, dimension: 0, log2_points: log2_points as u8 }
     }
 
-    /// Random numbers of the next dimensions: for the order and for the digits.
+    /// The index of the point in the Sobol sequence, and random numbers for the digits of two coordinates.
     #[inline]
-    fn keys(&mut self, dimensions: u32) -> (u64, u64) {
+    fn next(&mut self, dimensions: u32) -> (u64, [u32; 2]) {
         let key = combine(self.pattern, u64::from(self.dimension));
         self.dimension = self.dimension.wrapping_add(dimensions);
-        (key, combine(key, 0))
+        let bits = u32::from(self.log2_points);
+        let index = reverse(permute_base_4(self.reversed, bits, key), bits);
+        (index, [seeds(key)[3], key as u32])
     }
+}
+
+/// The `bits` low bits in reverse order.
+#[inline]
+const fn reverse(number: u64, bits: u32) -> u64 {
+    // In two steps, for there may be no bits.
+    number.reverse_bits() >> (63 - bits) >> 1
 }
 
 impl Sampler for ZSobolSampler {
     #[inline]
     fn next_1d(&mut self) -> f32 {
-        let (order, digits) = self.keys(1);
-        f32_from_bits(laine_karras(self.index(order) as u32, digits as u32).reverse_bits())
+        let (index, [seed, _]) = self.next(1);
+        f32_from_bits(laine_karras(index as u32, seed).reverse_bits())
     }
 
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
-        let (order, digits) = self.keys(2);
-        let index = self.index(order);
+        let (index, seeds) = self.next(2);
         // The first two coordinates with their digits reversed.
-        let (x, y) = (index as u32, reversed_second(index) as u32);
-        [laine_karras(x, digits as u32), laine_karras(y, (digits >> 32) as u32)]
-            .map(|r| f32_from_bits(r.reverse_bits()))
+        let point = [index as u32, reversed_second(index) as u32];
+        [0, 1].map(|k| f32_from_bits(laine_karras(point[k], seeds[k]).reverse_bits()))
     }
 
     #[inline]
@@ -191,16 +134,16 @@ impl Sampler for ZSobolSampler {
 
 impl Split for ZSobolSampler {
     /// The children go on along the curve below their path: stratified against each other, against those of the other
-    /// paths of the pixel, and against those of the pixels around. Counted as the next power of two.
+    /// paths of the pixel, and against those of the pixels around. Counted as the next power of two; what does not fit into
+    /// 63 bits with the points of the image is independent.
     #[inline]
     fn split(&self, domain: u32, children: u32, child: u32) -> Self {
-        let bits = children.max(1).checked_next_power_of_two().map_or(31, u32::ilog2);
-        Self {
-            morton: (self.morton << bits) | (u64::from(child) & ((1 << bits) - 1)),
-            pattern: combine(combine(self.pattern ^ 0x5bd1_e995, u64::from(domain)), u64::from(children)),
-            dimension: 0,
-            log2_points: (u32::from(self.log2_points) + bits).min(63) as u8,
-        }
+        let wanted = children.max(1).checked_next_power_of_two().map_or(32, u32::ilog2);
+        let (used, child) = (u32::from(self.log2_points), u64::from(child));
+        let bits = wanted.min(63 - used);
+        let place = (reverse(self.reversed, used) << bits) | (child & ((1 << bits) - 1));
+        let pattern = combine(combine(self.pattern ^ 0x5bd1_e995, u64::from(domain)), u64::from(children));
+        Self::new(place, used + bits, combine(pattern, child >> bits))
     }
 }
 
@@ -239,6 +182,6 @@ mod tests {
         let family = ZSobol::new(3840, 2160, 1 << 16, 0).unwrap();
         assert!(family.sampler(3840 * 2160 - 1, 1 << 40).next_2d()[0] < 1.0);
         assert!(ZSobol::new(0, 1, 1, 0).is_err() && ZSobol::new(1 << 31, 1 << 31, 4, 0).is_err());
-        assert_eq!(PERMUTATIONS[23], 0b11_10_01_00);
+        assert!(ZSobol::new(1, 1, 1, 0).unwrap().sampler(0, 0).next_2d()[1] < 1.0);
     }
 }

@@ -41,12 +41,18 @@ pub fn sobol_bits(index: u64, dimension: u32) -> u64 {
 #[inline]
 #[must_use]
 pub fn sobol_bits_u32(index: u64, dimension: u32) -> u32 {
+    reversed_u32(index, dimension).reverse_bits()
+}
+
+/// The digits of [`sobol_bits_u32`] in reverse order, the first one in the lowest bit.
+#[inline]
+pub(crate) fn reversed_u32(index: u64, dimension: u32) -> u32 {
     let (low, high) = (index as u32, index >> 32);
     if dimension >= tables::DIMENSIONS {
-        return (sobol_bits(index, dimension) >> 32) as u32;
+        return ((sobol_bits(index, dimension) >> 32) as u32).reverse_bits();
     }
-    let bits = tables::product(low, dimension);
-    if high == 0 { bits } else { bits ^ (sobol_bits(high << 32, dimension) >> 32) as u32 }
+    let digits = tables::reversed_product(low, dimension);
+    if high == 0 { digits } else { digits ^ ((sobol_bits(high << 32, dimension) >> 32) as u32).reverse_bits() }
 }
 
 /// The generator matrix of a dimension: column `i` is what bit `i` of the index contributes, first digit in bit 63.
