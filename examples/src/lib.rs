@@ -4,14 +4,18 @@
 //! - [`render`]: the loop over pixels, passes and threads.
 //! - [`choices`]: heuristics and light selection by name.
 //! - [`light_paths`]: light paths by name.
+//! - [`samplers`]: samplers by name.
 //! - [`metrics`]: how far an image is from another.
+//! - [`experiments`]: figures and claims of papers, measured.
 //! - [`output`]: files, the viewer, the terminal.
 //! - [`program`]: the subcommands of `lichtwerk`.
 
 pub mod choices;
 pub mod estimators;
+pub mod experiments;
 pub mod light_paths;
 pub mod metrics;
 pub mod output;
 pub mod program;
 pub mod render;
+pub mod samplers;

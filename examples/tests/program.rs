@@ -77,8 +77,19 @@ fn list_names_what_can_be_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["list"]);
     assert!(output.status.success() && output.stderr.is_empty());
-    for name in ["cornell-box", "furnace", "interior", "path", "light", "direct", "ao", "balance", "sobol", "gaussian"]
-    {
+    for name in [
+        "cornell-box",
+        "furnace",
+        "interior",
+        "path",
+        "light",
+        "direct",
+        "ao",
+        "balance",
+        "sobol",
+        "gaussian",
+        "samplers",
+    ] {
         assert!(text(&output.stdout).lines().any(|line| line.trim_start().starts_with(name)), "{name}");
     }
     assert!(names(folder.path()).is_empty());
@@ -185,6 +196,37 @@ fn the_showcase_fills_a_folder() {
     }
     fs::write(folder.path().join("file"), "").unwrap();
     fails(folder.path(), &["showcase", "--out", "file/show", "--spp", "1", "--size", "16x9"], &["file/show"]);
+}
+
+#[test]
+fn experiments_fail_before_they_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fails(folder, &["experiment", "nothing"], &["'nothing'", "lichtwerk list"]);
+    fs::write(folder.join("file"), "").unwrap();
+    for name in ["samplers", "all"] {
+        fails(folder, &["experiment", name, "--quick", "--out", "file/report"], &["file/report"]);
+    }
+    fs::create_dir_all(folder.join("taken/report.json")).unwrap();
+    fails(folder, &["experiment", "samplers", "--quick", "--out", "taken"], &["cannot write taken/report.json"]);
+    assert_eq!(names(&folder.join("taken")), ["report.json"]);
+}
+
+#[test]
+fn every_sampler_renders() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = run(folder.path(), &["list"]);
+    let section = text(&list.stdout).split("samplers (--sampler)\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let samplers: Vec<&str> = section.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    assert!(samplers.len() >= 6 && samplers.contains(&"global-halton"), "{samplers:?}");
+    for sampler in samplers {
+        for estimator in ["path", "light"] {
+            succeeds(folder.path(), &tiny(&["--sampler", sampler, "--estimator", estimator, "--out", "a.exr"]));
+            let image = LayeredImage::read_exr(&folder.path().join("a.exr")).unwrap();
+            assert!(image.rgb().unwrap().iter().flatten().sum::<f32>() > 0.0, "{sampler}");
+            assert_eq!(image.attribute("sampler"), Some(&sampler.into()));
+        }
+    }
 }
 
 #[test]

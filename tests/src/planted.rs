@@ -1,6 +1,7 @@
 //! Bugs that renderers have had, put on purpose where the tests must find them.
 
 use mis_heuristics::{Balance, Densities, Heuristic};
+use qmc_sampling::{Sampler, SamplerFamily};
 use scene_core::glam::Vec3A;
 use scene_core::{
     ChosenEmitter, EmitterChoice, EmitterId, Ray, ScatterSample, Scene, SurfacePoint, TransportMode, Vertex,
@@ -124,5 +125,96 @@ impl<A: EmitterChoice, B: EmitterChoice> EmitterChoice for Liar<A, B> {
 
     fn probability(&self, from: Option<&SurfacePoint>, id: EmitterId) -> f32 {
         self.claims.probability(from, id)
+    }
+}
+
+/// Samplers for an image of this size that forget to remove the pixel from the first pair of numbers: it is the place in the image.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaceInImage<F> {
+    /// The samplers.
+    pub family: F,
+    /// Width and height.
+    pub size: [u32; 2],
+}
+
+/// A sampler of [`PlaceInImage`].
+#[derive(Clone, Debug)]
+pub struct PlaceInImageSampler<S> {
+    sampler: S,
+    /// The pixel and the size, until the first pair was taken.
+    pixel: Option<[[u32; 2]; 2]>,
+}
+
+impl<F: SamplerFamily> SamplerFamily for PlaceInImage<F> {
+    type Sampler = PlaceInImageSampler<F::Sampler>;
+
+    fn sampler(&self, stream: u64, index: u64) -> Self::Sampler {
+        let width = u64::from(self.size[0]);
+        let pixel = [(stream % width) as u32, (stream / width) as u32];
+        PlaceInImageSampler { sampler: self.family.sampler(stream, index), pixel: Some([pixel, self.size]) }
+    }
+}
+
+impl<S: Sampler> Sampler for PlaceInImageSampler<S> {
+    fn next_1d(&mut self) -> f32 {
+        self.sampler.next_1d()
+    }
+
+    fn next_2d(&mut self) -> [f32; 2] {
+        let place = self.sampler.next_2d();
+        self.pixel.take().map_or(place, |[pixel, size]| {
+            std::array::from_fn(|k| ((pixel[k] as f32 + place[k]) / size[k] as f32).min(1.0 - 0.5 * f32::EPSILON))
+        })
+    }
+
+    fn fork(&self, domain: u32) -> Self {
+        Self { sampler: self.sampler.fork(domain), pixel: None }
+    }
+}
+
+/// Samplers that hand out the same few numbers again and again: every bounce of a path is alike.
+#[derive(Clone, Copy, Debug)]
+pub struct FewDimensions<F>(pub F);
+
+/// A sampler of [`FewDimensions`].
+#[derive(Clone, Debug)]
+pub struct FewDimensionsSampler<S> {
+    first: S,
+    sampler: S,
+    taken: u32,
+}
+
+impl<F: SamplerFamily> SamplerFamily for FewDimensions<F> {
+    type Sampler = FewDimensionsSampler<F::Sampler>;
+
+    fn sampler(&self, stream: u64, index: u64) -> Self::Sampler {
+        let first = self.0.sampler(stream, index);
+        FewDimensionsSampler { sampler: first.clone(), first, taken: 0 }
+    }
+}
+
+impl<S: Sampler> FewDimensionsSampler<S> {
+    fn count(&mut self) {
+        self.taken += 1;
+        if self.taken.is_multiple_of(4) {
+            self.sampler = self.first.clone();
+        }
+    }
+}
+
+impl<S: Sampler> Sampler for FewDimensionsSampler<S> {
+    fn next_1d(&mut self) -> f32 {
+        self.count();
+        self.sampler.next_1d()
+    }
+
+    fn next_2d(&mut self) -> [f32; 2] {
+        self.count();
+        self.sampler.next_2d()
+    }
+
+    fn fork(&self, domain: u32) -> Self {
+        let first = self.first.fork(domain);
+        Self { sampler: first.clone(), first, taken: 0 }
     }
 }

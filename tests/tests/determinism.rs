@@ -23,7 +23,7 @@ fn render(settings: &RenderSettings, pause: Duration) -> (Rendering, Vec<u64>) {
 }
 
 fn settings(estimator: EstimatorName, sampler: SamplerName) -> RenderSettings {
-    RenderSettings { estimator, sampler, threads: 1, seed: 7, ..RenderSettings::new(Budget::Samples(6)) }
+    RenderSettings { estimator, sampler, threads: 1, seed: 7, ..RenderSettings::new(Budget::Samples(3)) }
 }
 
 fn assert_same(a: &Rendering, b: &Rendering, what: &str) {
@@ -40,12 +40,12 @@ fn assert_same(a: &Rendering, b: &Rendering, what: &str) {
 #[test]
 fn serial_equals_parallel_bit_for_bit() {
     for estimator in [EstimatorName::Path, EstimatorName::Light, EstimatorName::Direct, EstimatorName::Ao] {
-        for sampler in [SamplerName::Sobol, SamplerName::Independent] {
+        for &sampler in SamplerName::all() {
             let serial = settings(estimator, sampler);
             let (expected, _) = render(&serial, Duration::ZERO);
             assert!(expected.rays.closest_hit > 0 && expected.rays.visibility > 0);
             assert_eq!(expected.threads, 1);
-            for threads in [2, 3, 8] {
+            for threads in [2, 8] {
                 let (parallel, _) = render(&RenderSettings { threads, ..serial.clone() }, Duration::ZERO);
                 assert_eq!(parallel.threads, threads);
                 assert_same(&expected, &parallel, &format!("{estimator:?}, {sampler:?}, {threads} threads"));
@@ -56,20 +56,20 @@ fn serial_equals_parallel_bit_for_bit() {
 
 #[test]
 fn passes_may_be_cut_anywhere() {
-    for estimator in [EstimatorName::Path, EstimatorName::Light] {
-        let settings = RenderSettings { threads: 2, ..settings(estimator, SamplerName::Sobol) };
+    for &sampler in SamplerName::all() {
+        let settings = RenderSettings { threads: 2, ..settings(EstimatorName::Light, sampler) };
         let (quick, few) = render(&settings, Duration::ZERO);
         // So slow that every sample is a pass of its own.
         let (slow, many) = render(&settings, Duration::from_millis(260));
-        assert_eq!(many, [1, 2, 3, 4, 5, 6]);
+        assert_eq!(many, [1, 2, 3]);
         assert!(few.len() <= many.len());
-        assert_same(&quick, &slow, &format!("{estimator:?} in passes up to {few:?} and {many:?}"));
+        assert_same(&quick, &slow, &format!("{sampler:?} in passes up to {few:?} and {many:?}"));
     }
 }
 
 #[test]
 fn a_seed_is_an_image() {
-    for sampler in [SamplerName::Sobol, SamplerName::Independent] {
+    for &sampler in SamplerName::all() {
         for estimator in [EstimatorName::Path, EstimatorName::Light] {
             let settings = settings(estimator, sampler);
             let (a, _) = render(&settings, Duration::ZERO);

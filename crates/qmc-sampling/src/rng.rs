@@ -1,7 +1,7 @@
 //! To and from the generators of the `rand` crates.
 use crate::float::f32_from_bits;
 use crate::hash::combine;
-use crate::sampler::Sampler;
+use crate::sampler::{Sampler, Split};
 use rand_core::{Infallible, Rng, SeedableRng, TryRng};
 
 /// A sampler as a random number generator, for code that asks for one.
@@ -83,6 +83,12 @@ impl<R: Rng + SeedableRng + Clone> Sampler for RngSampler<R> {
 
     fn fork(&self, domain: u32) -> Self {
         Self::new(combine(self.key, u64::from(domain)))
+    }
+}
+
+impl<R: Rng + SeedableRng + Clone> Split for RngSampler<R> {
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        Self::new(combine(combine(combine(self.key, u64::from(domain)), u64::from(children)), u64::from(child)))
     }
 }
 

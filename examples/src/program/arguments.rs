@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::render::{EstimatorName, FilterName, SamplerName};
+use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
 use crate::light_paths::LightPathSettings;
+use crate::samplers::SamplerName;
 
 /// Renders scenes with the estimators of the Lichtwerk crates, and measures them.
 #[derive(Debug, Parser)]
@@ -27,7 +28,9 @@ pub enum Command {
     Render(Box<RenderArguments>),
     /// Compare two images: MSE, relative MSE, MRSE, FLIP, ratio of the means.
     Diff(DiffArguments),
-    /// List builtin scenes, estimators, heuristics and samplers.
+    /// Measure what a paper claims, and write report.json.
+    Experiment(ExperimentArguments),
+    /// List builtin scenes, estimators, heuristics, samplers and experiments.
     List,
 }
 
@@ -138,6 +141,26 @@ pub struct DiffArguments {
     /// Also write the numbers to this file, as JSON.
     #[arg(long)]
     pub json: Option<PathBuf>,
+}
+
+/// Arguments of `experiment`.
+#[derive(Clone, Debug, Args)]
+pub struct ExperimentArguments {
+    /// An experiment (see `lichtwerk list`), or `all`.
+    pub name: String,
+    /// Be done within a minute.
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder for report.json and pictures; for `all`, each experiment has a folder of its name in it
+    /// [default: out/NAME].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Number of threads; 0 is one per core.
+    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
+    pub threads: usize,
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -3,9 +3,11 @@
 use clap::ValueEnum;
 use scene_core::builtin::Builtin;
 
-use super::render::{EstimatorName, FilterName, SamplerName};
+use super::render::{EstimatorName, FilterName};
 use super::{Failure, print};
 use crate::choices::{AnyHeuristic, LightSelection};
+use crate::experiments::EXPERIMENTS;
+use crate::samplers::SamplerName;
 
 /// Lists what can be named on the command line.
 pub(super) fn run() -> Result<(), Failure> {
@@ -18,6 +20,10 @@ pub(super) fn run() -> Result<(), Failure> {
     section::<LightSelection>(&mut text, "light selection (--lights)");
     section::<SamplerName>(&mut text, "samplers (--sampler)");
     section::<FilterName>(&mut text, "filters (--filter)");
+    text += "\nexperiments (lichtwerk experiment NAME)\n";
+    for experiment in EXPERIMENTS {
+        text += &format!("  {:<14} {}\n", experiment.name, experiment.about);
+    }
     print(text.trim_end())
 }
 

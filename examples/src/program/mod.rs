@@ -2,6 +2,7 @@
 
 mod arguments;
 mod diff;
+mod experiment;
 mod list;
 mod load;
 mod render;
@@ -9,9 +10,12 @@ mod showcase;
 
 use clap::Parser;
 
-pub use arguments::{Arguments, Command, DiffArguments, RenderArguments, ShowcaseArguments};
+pub use arguments::{Arguments, Command, DiffArguments, ExperimentArguments, RenderArguments, ShowcaseArguments};
 pub use load::{LoadError, load_description};
-pub use render::{EstimatorName, RenderSettings, SamplerName, estimate, render_to_image};
+pub(crate) use render::filter_of;
+pub use render::{EstimatorName, RenderSettings, estimate, render_to_image};
+
+pub use crate::samplers::SamplerName;
 
 /// Why a subcommand failed: one line for the user.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -46,6 +50,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Showcase(arguments)) => showcase::run(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Diff(arguments)) => diff::run(&arguments),
+        Some(Command::Experiment(arguments)) => experiment::run(&arguments),
         Some(Command::List) => list::run(),
     }
 }

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use qmc_sampling::{Independent, OwenSobol, SamplerFamily};
 use scene_core::film::{Filter, FilterError, LayeredImage};
 use scene_core::reference::FilterDescription;
-use scene_core::{ReferenceScene, RussianRoulette, Scene};
+use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
 
 use vpl_gi::{LightTracing, Residual, RobustIgi};
 
@@ -20,6 +20,7 @@ use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
 use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared};
+use crate::samplers::{AnyFamily, SamplerName};
 
 /// The estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -37,16 +38,6 @@ pub enum EstimatorName {
     RobustIgi,
     /// Virtual point lights alone. Biased where the threshold is not infinite, or there are mirrors and glass.
     InstantRadiosity,
-}
-
-/// The samplers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum SamplerName {
-    /// Independent random numbers (PCG).
-    Independent,
-    /// Owen-scrambled Sobol points per pixel, padded four dimensions at a time.
-    #[default]
-    Sobol,
 }
 
 /// The reconstruction filters.
@@ -122,7 +113,7 @@ impl RenderSettings {
 /// Renders with the estimator that the settings name.
 ///
 /// # Errors
-/// If the image has no pixels or too many, or threads cannot be started.
+/// If the image has no pixels or too many (for the sampler), or threads cannot be started.
 pub fn estimate<S: Scene + Sync>(
     scene: &S,
     settings: &RenderSettings,
@@ -131,8 +122,20 @@ pub fn estimate<S: Scene + Sync>(
     match settings.sampler {
         SamplerName::Independent => estimate_with(scene, settings, &Independent::new(settings.seed), observe),
         SamplerName::Sobol => estimate_with(scene, settings, &OwenSobol::new(settings.seed), observe),
+        // The others share one copy of the renderer.
+        name => {
+            let paths = match settings.budget {
+                Budget::Samples(samples) => u32::try_from(samples).unwrap_or(u32::MAX).clamp(1, 1 << 31),
+                Budget::Seconds(_) => PATHS_OF_TIMED_RENDERINGS,
+            };
+            let family = AnyFamily::new(name, scene.sensor().resolution(), paths, settings.seed)?;
+            estimate_with(scene, settings, &family, observe)
+        }
     }
 }
+
+/// Samplers that want to know the number of paths per pixel are told this one if only the time is known.
+const PATHS_OF_TIMED_RENDERINGS: u32 = 64;
 
 fn estimate_with<S: Scene + Sync>(
     scene: &S,
@@ -220,7 +223,7 @@ fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderS
 }
 
 /// Makes the filter that a scene asks for.
-pub(super) fn filter_of(description: FilterDescription) -> Result<Filter, FilterError> {
+pub(crate) fn filter_of(description: FilterDescription) -> Result<Filter, FilterError> {
     match description {
         FilterDescription::Box => Ok(Filter::BOX),
         FilterDescription::Tent { radius } => Filter::tent(radius),

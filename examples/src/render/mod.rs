@@ -11,6 +11,7 @@ use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
 use qmc_sampling::SamplerFamily;
+use qmc_sampling::sequences::SequenceError;
 use rayon::prelude::*;
 use scene_core::film::{Film, FilmError, Filter, SplatBuffer};
 use scene_core::{Counting, RayCounts, Scene, Sensor, Spectrum};
@@ -27,7 +28,7 @@ const TILE_SIZE: u32 = 16;
 const LIGHT_PATHS_PER_TASK: u64 = 4096;
 /// Number of such tasks whose splats wait in memory at once.
 const LIGHT_TASKS_PER_WAVE: u64 = 64;
-/// The stream of the light paths' samplers, apart from those of the pixels.
+/// The stream of the light paths' samplers, apart from those of the pixels: no image has so many.
 const LIGHT_STREAM: u64 = 1 << 40;
 
 /// What to render, and how.
@@ -91,6 +92,9 @@ pub enum RenderError {
     /// The threshold of the geometry term.
     #[error(transparent)]
     Partition(#[from] vpl_gi::PartitionError),
+    /// The image's size again: a sequence through all of it does not go that far.
+    #[error("the sampler cannot be used: {0}")]
+    Sampler(#[from] SequenceError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

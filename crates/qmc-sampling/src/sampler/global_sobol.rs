@@ -1,11 +1,11 @@
 //! One Sobol sequence through the whole image.
-use super::{Sampler, SamplerFamily, shuffle};
+use super::{Sampler, SamplerFamily, Split, pixel_of, seeds, shuffle};
 use crate::float::f32_from_bits;
 use crate::hash::{combine, mix64};
 use crate::image::{ImageSequence, SobolImage};
-use crate::scramble::{laine_karras, owen_hash_u32};
+use crate::scramble::laine_karras;
 use crate::sequences::SequenceError;
-use crate::sobol::{DIMENSIONS, reversed_group, sobol_bits, sobol_bits_u32};
+use crate::sobol::{DIMENSIONS, reversed_group, reversed_second, reversed_u32, sobol_bits};
 
 /// One Owen-scrambled Sobol sequence through all the pixels of an image.
 ///
@@ -14,7 +14,8 @@ use crate::sobol::{DIMENSIONS, reversed_group, sobol_bits, sobol_bits_u32};
 /// sampled by one sequence of up to 1024 dimensions and 2^52 points, and errors of neighbouring pixels tend to cancel.
 /// The digits that choose the pixel are not scrambled, those below and all other dimensions are.
 ///
-/// Forks and dimensions from 1024 on restart at dimension 0, with the index shuffled and other random digits.
+/// Forks, splits and dimensions from 1024 on restart at dimension 0 of a sequence of their pixel, of which the batch counts
+/// the points, with the index shuffled and other random digits.
 /// Cost: per number eight lookups of four bytes, or per four eight of 16; more for indices above 2^32.
 ///
 /// ```
@@ -58,11 +59,14 @@ impl GlobalSobol {
 impl SamplerFamily for GlobalSobol {
     type Sampler = GlobalSobolSampler;
 
-    /// Streams beyond the pixels of the image wrap around; so does the index after 2^52 points.
+    /// Streams beyond the pixels of the image are randomisations of their own, of which the index counts the points.
+    /// After 2^52 points the sequence starts again.
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> GlobalSobolSampler {
-        let [width, height] = self.image.size().map(u64::from);
-        let pixel = [(stream % width) as u32, (stream / width % height) as u32];
+        let Some(pixel) = pixel_of(stream, self.image.size()) else {
+            let pattern = combine(combine(0, self.seed), stream);
+            return GlobalSobolSampler { pattern, index, dimension: 0, pixel_digits: 0 };
+        };
         self.at(self.image.index(pixel, index % self.image.batches()))
     }
 }
@@ -79,6 +83,9 @@ pub struct GlobalSobolSampler {
     pixel_digits: u32,
 }
 
+/// The number of groups of four dimensions that there are tables for.
+const GROUPS: u32 = 64;
+
 impl GlobalSobolSampler {
     /// The random number of a group of four dimensions.
     #[inline]
@@ -89,33 +96,32 @@ impl GlobalSobolSampler {
     /// A coordinate of the point.
     #[inline]
     fn draw(&self, dimension: u32) -> f32 {
-        let seed = (self.key(dimension / 4).wrapping_mul(SEED_MULTIPLIERS[(dimension % 4) as usize]) >> 32) as u32;
-        let bits = sobol_bits_u32(self.index, dimension);
-        f32_from_bits(if dimension < 2 { self.place(bits, seed) } else { owen_hash_u32(bits, seed) })
+        let seed = seeds(self.key(dimension / 4))[(dimension % 4) as usize];
+        let bits = match dimension {
+            0 | 1 => self.place(dimension, seed),
+            _ => laine_karras(reversed_u32(self.index, dimension), seed).reverse_bits(),
+        };
+        f32_from_bits(bits)
     }
 
-    /// Scrambles the digits below those that choose the pixel.
+    /// A coordinate within the pixel: scrambles the digits below those that choose the pixel, of which the scramble depends.
     #[inline]
-    fn place(&self, bits: u32, seed: u32) -> u32 {
-        if self.pixel_digits == 0 {
-            return owen_hash_u32(bits, seed);
-        }
-        let pixel = bits >> (32 - self.pixel_digits);
-        owen_hash_u32(bits << self.pixel_digits, mix64((u64::from(pixel) << 32) | u64::from(seed)) as u32)
+    fn place(&self, dimension: u32, seed: u32) -> u32 {
+        let reversed = if dimension == 0 { self.index } else { reversed_second(self.index) };
+        let digits = self.pixel_digits;
+        let seed = if digits == 0 {
+            seed
+        } else {
+            let pixel = reversed & ((1 << digits) - 1);
+            mix64((pixel << 32) | u64::from(seed)) as u32
+        };
+        laine_karras((reversed >> digits) as u32, seed).reverse_bits()
     }
 
-    /// The next four numbers. They start at a multiple of four dimensions, leaving out what is before.
+    /// Four coordinates of the point, of a group below [`GROUPS`].
     #[inline]
-    pub fn next_4d(&mut self) -> [f32; 4] {
-        let group = self.dimension.div_ceil(4);
-        if group >= 64 {
-            let [a, b] = self.next_2d();
-            let [c, d] = self.next_2d();
-            return [a, b, c, d];
-        }
-        self.dimension = 4 * (group + 1);
-        let key = self.key(group);
-        let seeds = SEED_MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32);
+    fn group(&self, group: u32) -> [f32; 4] {
+        let digit_seeds = seeds(self.key(group));
         let mut point = reversed_group(self.index as u32, group);
         let high = self.index >> 32;
         if high != 0 {
@@ -124,15 +130,28 @@ impl GlobalSobolSampler {
             }
         }
         let mut scrambled = [0; 4];
-        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(seeds) {
+        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(digit_seeds) {
             *s = laine_karras(p, seed).reverse_bits();
         }
         if group == 0 && self.pixel_digits > 0 {
-            for k in 0..2 {
-                scrambled[k] = self.place(point[k].reverse_bits(), seeds[k]);
+            for (k, s) in (0..2).zip(&mut scrambled) {
+                *s = self.place(k, digit_seeds[k as usize]);
             }
         }
         scrambled.map(f32_from_bits)
+    }
+
+    /// The next four numbers. They start at a multiple of four dimensions, leaving out what is before.
+    #[inline]
+    pub fn next_4d(&mut self) -> [f32; 4] {
+        let group = self.dimension.div_ceil(4);
+        if group >= GROUPS {
+            let [a, b] = self.next_2d();
+            let [c, d] = self.next_2d();
+            return [a, b, c, d];
+        }
+        self.dimension = 4 * (group + 1);
+        self.group(group)
     }
 
     /// Makes room for `n` more dimensions.
@@ -142,11 +161,26 @@ impl GlobalSobolSampler {
             *self = self.fork(u32::MAX);
         }
     }
-}
 
-/// Odd numbers without structure (from the digits of square roots of primes, as in SHA-512).
-const SEED_MULTIPLIERS: [u64; 4] =
-    [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
+    /// The sampler of the `child`th of `children` points of each point, in a pattern of its own.
+    ///
+    /// Samplers of pixels leave the sequence of the image for one of their pixel, of which the batch counts the points: those
+    /// of one pixel are far from each other in the sequence of the image, and would be no better than random ones after
+    /// another shuffle.
+    #[inline]
+    fn branch(&self, pattern: u64, children: u64, child: u64) -> Self {
+        let digits = self.pixel_digits;
+        let low = |reversed: u64| reversed & ((1 << digits) - 1);
+        let (pattern, batch) = if digits == 0 {
+            (pattern, self.index)
+        } else {
+            let pixel = low(self.index) | (low(reversed_second(self.index)) << 32);
+            (combine(pattern, pixel), self.index >> (2 * digits))
+        };
+        let index = batch.wrapping_mul(children).wrapping_add(child);
+        Self { pattern, index: shuffle(index, mix64(!pattern)), dimension: 0, pixel_digits: 0 }
+    }
+}
 
 impl Sampler for GlobalSobolSampler {
     #[inline]
@@ -160,15 +194,27 @@ impl Sampler for GlobalSobolSampler {
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
         self.reserve(2);
-        let pair = [self.draw(self.dimension), self.draw(self.dimension + 1)];
+        let (group, first) = (self.dimension / 4, (self.dimension % 4) as usize);
         self.dimension += 2;
-        pair
+        // Four at once are cheaper than two single ones, but for the first pair.
+        if 0 < group && group < GROUPS && first < 3 {
+            let four = self.group(group);
+            return [four[first], four[first + 1]];
+        }
+        [self.draw(self.dimension - 2), self.draw(self.dimension - 1)]
     }
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
-        let pattern = combine(self.pattern, u64::from(domain));
-        Self { pattern, index: shuffle(self.index, mix64(!pattern)), dimension: 0, pixel_digits: 0 }
+        self.branch(combine(self.pattern, u64::from(domain)), 1, 0)
+    }
+}
+
+impl Split for GlobalSobolSampler {
+    #[inline]
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let pattern = combine(combine(self.pattern, u64::from(domain)), u64::from(children));
+        self.branch(pattern, u64::from(children), u64::from(child))
     }
 }
 
@@ -184,6 +230,15 @@ mod tests {
             let mut single = sampler;
             for _ in 0..70 {
                 assert_eq!(at_once.next_4d(), [0; 4].map(|_| single.next_1d()));
+            }
+            for skipped in 0..4 {
+                let (mut pairs, mut single) = (sampler, sampler);
+                for _ in 0..skipped {
+                    assert_eq!(pairs.next_1d(), single.next_1d());
+                }
+                for _ in 0..400 {
+                    assert_eq!(pairs.next_2d(), [0; 2].map(|_| single.next_1d()));
+                }
             }
         }
     }

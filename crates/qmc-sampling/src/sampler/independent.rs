@@ -92,8 +92,9 @@ impl Sampler for IndependentSampler {
 
 impl Split for IndependentSampler {
     #[inline]
-    fn split(&self, domain: u32, _children: u32, child: u32) -> Self {
-        Self::from_key(combine(combine(self.increment, u64::from(domain)), u64::from(child)))
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let key = combine(combine(self.increment, u64::from(domain)), u64::from(children));
+        Self::from_key(combine(key, u64::from(child)))
     }
 }
 

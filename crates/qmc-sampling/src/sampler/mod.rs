@@ -2,11 +2,13 @@
 mod from_sequence;
 mod global_halton;
 mod global_sobol;
+mod groups;
 mod independent;
 mod lattice;
 #[cfg(feature = "openqmc")]
 mod open_qmc;
 mod owen_sobol;
+mod z_order;
 mod z_sobol;
 
 pub use from_sequence::{FromSequence, SequenceSampler};
@@ -16,6 +18,9 @@ pub use independent::{Independent, IndependentSampler};
 pub use lattice::{PaddedLattice, PaddedLatticeSampler};
 #[cfg(feature = "openqmc")]
 pub use open_qmc::{OpenQmc, OpenQmcSampler};
+/// The crate whose sampler kinds [`OpenQmc`] takes.
+#[cfg(feature = "openqmc")]
+pub use openqmc;
 pub use owen_sobol::{OwenSobol, OwenSobolSampler};
 pub use z_sobol::{ZSobol, ZSobolSampler};
 
@@ -41,7 +46,7 @@ pub trait Sampler: Clone {
     fn fork(&self, domain: u32) -> Self;
 }
 
-/// Splitting of paths: one path goes on as several.
+/// Splitting of paths: one path goes on as several. Every sampler of this crate can.
 pub trait Split: Sampler {
     /// Child number `child` of `children`, in a domain of its own.
     ///
@@ -57,6 +62,9 @@ pub trait Split: Sampler {
 /// # Laws
 /// - The samplers of one stream are stratified against each other over consecutive indices, where the family can.
 /// - The samplers of different streams are independent, unless the family says how they are related.
+/// - A family that is made for an image of `width` times `height` pixels takes stream `y * width + x` for the pixel in
+///   column `x` and row `y`. The first pair of numbers is the place in the pixel, from `[0, 0]` to below `[1, 1]`. Any other
+///   stream (light paths, say) belongs to no pixel, and is a randomisation of its own.
 pub trait SamplerFamily: Sync {
     /// What it hands out.
     type Sampler: Sampler;
@@ -73,6 +81,26 @@ fn shuffle(index: u64, key: u64) -> u64 {
     let high = index >> 32;
     let key = if high == 0 { key } else { crate::hash::combine(key, high) };
     (high << 32) | u64::from(crate::scramble::owen_hash_u32(index as u32, (key >> 32) as u32))
+}
+
+/// Four random numbers of a well mixed key.
+#[inline]
+fn seeds(key: u64) -> [u32; 4] {
+    // Odd numbers without structure, from the digits of square roots of primes, as in SHA-512.
+    const MULTIPLIERS: [u64; 4] =
+        [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
+    MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32)
+}
+
+/// Column and row of a stream, if it is a pixel of an image of this size.
+#[inline]
+fn pixel_of(stream: u64, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
+    let (x, y) = match u32::try_from(stream) {
+        // Small numbers are divided faster.
+        Ok(short) => (short % width, u64::from(short / width)),
+        Err(_) => ((stream % u64::from(width)) as u32, stream / u64::from(width)),
+    };
+    (y < u64::from(height)).then_some([x, y as u32])
 }
 
 #[cfg(test)]
@@ -169,16 +197,55 @@ mod tests {
         with_every_family!(is_small);
     }
 
+    /// The children of the first paths of a pixel, four each: one in each of 64 cells, for all of these and for those of
+    /// single paths; `columns` of 1 asks for the first coordinate only.
+    fn splits_well<F: SamplerFamily<Sampler: Split>>(name: &str, family: &F, columns: usize) {
+        for stream in [3, 77, 1 << 40] {
+            for domain in [0, 5] {
+                for (paths, children) in [(16, 4), (1, 64), (64, 1)] {
+                    let mut hit = [false; 64];
+                    for i in 0..64_u32 {
+                        let path = family.sampler(stream, u64::from(i / children));
+                        let [x, y] = path.split(domain, children, i % children).next_2d();
+                        let rows = 64 / columns;
+                        hit[(columns as f32 * y) as usize + columns * (rows as f32 * x) as usize] = true;
+                    }
+                    assert!(hit.iter().all(|&h| h), "{name}: {paths} paths, {children} children, domain {domain}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn children_of_all_the_paths_are_stratified_together() {
-        let family = OwenSobol::new(8);
-        let mut hit = [false; 64];
-        for i in 0..64_u32 {
-            let mut child = family.sampler(3, u64::from(i / 4)).split(5, 4, i % 4);
-            let [x, y] = child.next_2d();
-            hit[(8.0 * x) as usize + 8 * (8.0 * y) as usize] = true;
+        let lattice = FromSequence::new(crate::sequences::Lattice::default(), 1);
+        for columns in [1, 8] {
+            splits_well("owen-sobol", &OwenSobol::new(8), columns);
+            splits_well("global sobol", &GlobalSobol::new(64, 64, 1).unwrap(), columns);
+            splits_well("z-sobol", &ZSobol::new(64, 64, 64, 1).unwrap(), columns);
         }
-        assert!(hit.iter().all(|&h| h));
+        splits_well("global halton", &GlobalHalton::new(64, 64, 1).unwrap(), 1);
+        splits_well("lattice", &PaddedLattice::new(1), 1);
+        splits_well("from sequence", &lattice, 1);
+    }
+
+    /// Children are no copies: not of each other, nor of the fork of the same domain, nor of those of other numbers of children.
+    #[test]
+    fn children_are_all_different() {
+        fn check<F: SamplerFamily<Sampler: Split>>(name: &str, family: &F) {
+            let path = family.sampler(70, 2);
+            let splits = (0..4).flat_map(|child| [4, 8].map(|children| path.split(1, children, child).next_2d()));
+            let mut all: Vec<[u32; 2]> = splits.map(|pair| pair.map(f32::to_bits)).collect();
+            all.push(path.fork(1).next_2d().map(f32::to_bits));
+            all.push(path.clone().next_2d().map(f32::to_bits));
+            all.sort_unstable();
+            all.dedup();
+            assert_eq!(all.len(), 10, "{name}");
+            let mut used = path.clone();
+            used.next_1d();
+            assert_eq!(used.split(3, 4, 2).next_2d(), path.split(3, 4, 2).next_2d(), "{name}");
+        }
+        with_every_family!(check);
     }
 
     #[test]

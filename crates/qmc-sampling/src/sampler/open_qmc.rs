@@ -1,12 +1,16 @@
 //! The samplers of OpenQMC.
+use super::groups::{DrawGroup, Groups};
 use super::{Sampler, SamplerFamily, Split};
+use crate::hash::combine;
 use openqmc::SamplerImpl;
 
 /// The samplers of OpenQMC, in its Rust port `openqmc-rs`: Sobol, lattice and progressive multi-jittered points, each with a
 /// blue-noise variant for images.
 ///
-/// The stream is the pixel, `y * width + x`; the index is at most 2^16, beyond which OpenQMC repeats values. The seed takes the
-/// place of its frame number. Each group of four dimensions is a domain.
+/// The stream is the pixel, `y * width + x`; pixels 256 columns or rows apart share their points. Paths are stratified in
+/// blocks of 2^16, independent of each other. A hash of the seed takes the place of the frame number, cut to
+/// 30 bits; streams from 2^32 on, which no image has, are told apart in the same way. Each group of four
+/// dimensions is a domain.
 ///
 /// ```
 /// use qmc_sampling::{Sampler, SamplerFamily, sampler::OpenQmc};
@@ -16,15 +20,15 @@ use openqmc::SamplerImpl;
 #[derive(Debug)]
 pub struct OpenQmc<I> {
     width: u32,
-    frame: i32,
+    seed: u64,
     kind: core::marker::PhantomData<fn() -> I>,
 }
 
 impl<I> OpenQmc<I> {
-    /// The samplers for an image of this width. A width of zero is taken as one; of the seed, 31 bits count.
+    /// The samplers for an image of this width. A width of zero is taken as one.
     #[must_use]
     pub fn new(width: u32, seed: u64) -> Self {
-        Self { width: width.max(1), frame: (seed & 0x7fff_ffff) as i32, kind: core::marker::PhantomData }
+        Self { width: width.max(1), seed, kind: core::marker::PhantomData }
     }
 }
 
@@ -34,60 +38,51 @@ impl<I: SamplerImpl> SamplerFamily for OpenQmc<I> {
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> OpenQmcSampler<I> {
         let [x, y] = [stream % u64::from(self.width), stream / u64::from(self.width)].map(|c| (c & 0x7fff_ffff) as i32);
-        let root = openqmc::Sampler::<I>::new(x, y, self.frame, (index & 0x7fff_ffff) as i32);
-        OpenQmcSampler { root, dimension: 0, group: [0.0; 4] }
+        // OpenQMC adds the number of the block of 2^16 paths to the frame: leave room, and tell blocks apart ourselves.
+        let key = combine(combine(combine(0, self.seed), stream >> 32), index >> 16);
+        let root = openqmc::Sampler::<I>::new(x, y, (key >> 34) as i32, (index & 0xffff) as i32);
+        OpenQmcSampler(Groups::new(Root(root)))
     }
 }
 
 /// The sampler of [`OpenQmc`].
 #[derive(Clone, Copy, Debug)]
-pub struct OpenQmcSampler<I: SamplerImpl> {
-    root: openqmc::Sampler<I>,
-    dimension: u32,
-    group: [f32; 4],
-}
+pub struct OpenQmcSampler<I: SamplerImpl>(Groups<Root<I>, [f32; 4]>);
 
-impl<I: SamplerImpl> OpenQmcSampler<I> {
+/// What the domains of groups and forks are derived from.
+#[derive(Clone, Copy, Debug)]
+struct Root<I: SamplerImpl>(openqmc::Sampler<I>);
+
+impl<I: SamplerImpl> DrawGroup<[f32; 4]> for Root<I> {
     #[inline]
-    fn refill(&mut self) {
+    fn draw(&self, group: u32, numbers: &mut [f32; 4]) {
         // Domains of forks are even, those of groups odd.
-        self.group = self.root.new_domain((self.dimension / 2 + 1) as i32).draw_sample_f32::<4>();
+        *numbers = self.0.new_domain((2 * group + 1) as i32).draw_sample_f32::<4>();
     }
 }
 
 impl<I: SamplerImpl> Sampler for OpenQmcSampler<I> {
     #[inline]
     fn next_1d(&mut self) -> f32 {
-        if self.dimension.is_multiple_of(4) {
-            self.refill();
-        }
-        let x = self.group[(self.dimension % 4) as usize];
-        self.dimension = self.dimension.wrapping_add(1);
-        x
+        self.0.next_1d()
     }
 
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
-        self.dimension = self.dimension.wrapping_add(self.dimension % 2);
-        if self.dimension.is_multiple_of(4) {
-            self.refill();
-        }
-        let first = (self.dimension % 4) as usize;
-        self.dimension = self.dimension.wrapping_add(2);
-        [self.group[first], self.group[first + 1]]
+        self.0.next_2d()
     }
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
-        Self { root: self.root.new_domain(domain.wrapping_mul(2) as i32), dimension: 0, group: [0.0; 4] }
+        Self(Groups::new(Root(self.0.stream.0.new_domain(domain.wrapping_mul(2) as i32))))
     }
 }
 
 impl<I: SamplerImpl> Split for OpenQmcSampler<I> {
     #[inline]
     fn split(&self, domain: u32, children: u32, child: u32) -> Self {
-        let root = self.root.new_domain_split(domain.wrapping_mul(2) as i32, children.max(1) as i32, child as i32);
-        Self { root, dimension: 0, group: [0.0; 4] }
+        let (key, size) = (domain.wrapping_mul(2) as i32, children.max(1) as i32);
+        Self(Groups::new(Root(self.0.stream.0.new_domain_split(key, size, child as i32))))
     }
 }
 
@@ -98,7 +93,8 @@ mod tests {
     #[test]
     fn is_openqmc_and_small() {
         let mut sampler = OpenQmc::<openqmc::sobol::SobolImpl>::new(10, 3).sampler(42, 5);
-        let theirs = openqmc::SobolSampler::new(2, 4, 3, 5).new_domain(1).draw_sample_f32::<4>();
+        let frame = (combine(combine(combine(0, 3), 0), 0) >> 34) as i32;
+        let theirs = openqmc::SobolSampler::new(2, 4, frame, 5).new_domain(1).draw_sample_f32::<4>();
         assert_eq!([0; 4].map(|_| sampler.next_1d()), theirs);
         assert_ne!(sampler.fork(0).next_2d(), sampler.fork(1).next_2d());
         assert!(size_of::<OpenQmcSampler<openqmc::sobol::SobolImpl>>() <= 32);

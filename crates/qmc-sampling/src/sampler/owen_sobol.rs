@@ -1,5 +1,6 @@
 //! Padded, hashed Owen-scrambled Sobol points.
-use super::{Sampler, SamplerFamily, Split};
+use super::groups::{DrawGroup, Groups};
+use super::{Sampler, SamplerFamily, Split, seeds};
 use crate::float::f32_from_bits;
 use crate::hash::{combine, mix64};
 use crate::scramble::laine_karras;
@@ -57,20 +58,58 @@ impl SamplerFamily for OwenSobol {
 /// The sampler of [`OwenSobol`], 32 bytes.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct OwenSobolSampler {
-    /// Hash of the seed, the stream and the forks.
-    pattern: u64,
+pub struct OwenSobolSampler(Groups<Point, [f32; 4]>);
+
+/// One point of one pattern.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Point {
+    /// Hash of the seed, the stream and the forks, in halves: then there is no padding behind the index.
+    pattern: [u32; 2],
     index_reversed: u32,
-    /// The next dimension.
-    dimension: u32,
-    /// The group that `dimension` lies in, valid unless `dimension` is a multiple of four.
-    group: [f32; 4],
+}
+
+impl Point {
+    #[inline]
+    const fn new(pattern: u64, index_reversed: u32) -> Self {
+        Self { pattern: [pattern as u32, (pattern >> 32) as u32], index_reversed }
+    }
+
+    #[inline]
+    const fn pattern(&self) -> u64 {
+        self.pattern[0] as u64 | ((self.pattern[1] as u64) << 32)
+    }
+
+    /// The four numbers of a group. Inlined always: then what does not depend on the index moves out of loops.
+    #[inline(always)]
+    fn group(&self, group: u32) -> [f32; 4] {
+        // Derive five seeds: one for the index, one per dimension.
+        let key = mix64(self.pattern().wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+        let digit_seeds = seeds(key);
+        // Shuffle the index, so that groups are not correlated by their common index.
+        let index_reversed = laine_karras(self.index_reversed, key as u32);
+        // Take the Sobol point and scramble its digits.
+        let point = reversed_4d(index_reversed);
+        let mut scrambled = [0; 4];
+        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(digit_seeds) {
+            *s = laine_karras(p, seed).reverse_bits();
+        }
+        scrambled.map(f32_from_bits)
+    }
+}
+
+impl DrawGroup<[f32; 4]> for Point {
+    /// Not inlined: its callers are, many times.
+    #[inline(never)]
+    fn draw(&self, group: u32, numbers: &mut [f32; 4]) {
+        *numbers = self.group(group);
+    }
 }
 
 impl OwenSobolSampler {
     #[inline]
     const fn new(pattern: u64, index_reversed: u32) -> Self {
-        Self { pattern, index_reversed, dimension: 0, group: [0.0; 4] }
+        Self(Groups::new(Point::new(pattern, index_reversed)))
     }
 
     /// Point `index` of a pattern; its high bits go into the pattern.
@@ -89,74 +128,35 @@ impl OwenSobolSampler {
     /// ```
     #[inline]
     pub fn next_4d(&mut self) -> [f32; 4] {
-        let group = self.dimension.div_ceil(4);
-        self.dimension = 4 * (group + 1);
-        self.draw(group)
-    }
-
-    /// The four numbers of a group. Inlined always: then what does not depend on the index moves out of loops.
-    #[inline(always)]
-    fn draw(&self, group: u32) -> [f32; 4] {
-        // Derive five seeds: one for the index, one per dimension.
-        let key = mix64(self.pattern.wrapping_add(u64::from(group).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-        let seeds = SEED_MULTIPLIERS.map(|m| (key.wrapping_mul(m) >> 32) as u32);
-        // Shuffle the index, so that groups are not correlated by their common index.
-        let index_reversed = laine_karras(self.index_reversed, key as u32);
-        // Take the Sobol point and scramble its digits.
-        let point = reversed_4d(index_reversed);
-        let mut scrambled = [0; 4];
-        for ((s, p), seed) in scrambled.iter_mut().zip(point).zip(seeds) {
-            *s = laine_karras(p, seed).reverse_bits();
-        }
-        scrambled.map(f32_from_bits)
-    }
-
-    /// Brings the numbers of the current group to hand.
-    ///
-    /// Not inlined: its callers are, many times.
-    #[inline(never)]
-    fn refill(&mut self) {
-        self.group = self.draw(self.dimension / 4);
+        let group = self.0.skip_group();
+        self.0.stream.group(group)
     }
 }
-
-/// Odd numbers without structure (from the digits of square roots of primes, as in SHA-512).
-const SEED_MULTIPLIERS: [u64; 4] =
-    [0x6a09_e667_f3bc_c909, 0xbb67_ae85_84ca_a73b, 0x3c6e_f372_fe94_f82b, 0xa54f_f53a_5f1d_36f1];
 
 impl Sampler for OwenSobolSampler {
     #[inline]
     fn next_1d(&mut self) -> f32 {
-        if self.dimension.is_multiple_of(4) {
-            self.refill();
-        }
-        let x = self.group[(self.dimension % 4) as usize];
-        self.dimension = self.dimension.wrapping_add(1);
-        x
+        self.0.next_1d()
     }
 
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
-        self.dimension = self.dimension.wrapping_add(self.dimension % 2);
-        if self.dimension.is_multiple_of(4) {
-            self.refill();
-        }
-        let first = (self.dimension % 4) as usize & 2;
-        self.dimension = self.dimension.wrapping_add(2);
-        [self.group[first], self.group[first + 1]]
+        self.0.next_2d()
     }
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
-        Self::new(combine(self.pattern, u64::from(domain)), self.index_reversed)
+        let Point { index_reversed, .. } = self.0.stream;
+        Self::new(combine(self.0.stream.pattern(), u64::from(domain)), index_reversed)
     }
 }
 
 impl Split for OwenSobolSampler {
     #[inline]
     fn split(&self, domain: u32, children: u32, child: u32) -> Self {
-        let index = u64::from(self.index_reversed.reverse_bits()) * u64::from(children) + u64::from(child);
-        Self::at(combine(combine(self.pattern, u64::from(domain)), u64::from(children)), index)
+        let point = &self.0.stream;
+        let index = u64::from(point.index_reversed.reverse_bits()) * u64::from(children) + u64::from(child);
+        Self::at(combine(combine(point.pattern(), u64::from(domain)), u64::from(children)), index)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Blue-noise error diffusion along the Z-order curve.
-use super::{Sampler, SamplerFamily};
+use super::z_order::{permute_base_4, z_order};
+use super::{Sampler, SamplerFamily, Split, pixel_of, seeds};
 use crate::float::f32_from_bits;
 use crate::hash::combine;
-use crate::scramble::owen_hash_u32;
+use crate::scramble::laine_karras;
 use crate::sequences::SequenceError;
-use crate::sobol::sobol_bits_u32;
+use crate::sobol::reversed_second;
 
 /// Owen-scrambled Sobol points handed out along the Z-order (Morton) curve of the image: neighbouring pixels get
 /// neighbouring parts of one sequence, so that their errors are of opposite signs and the noise is blue.
@@ -27,7 +28,7 @@ use crate::sobol::sobol_bits_u32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ZSobol {
-    width: u32,
+    size: [u32; 2],
     /// Of the number of paths per pixel.
     log2_paths: u32,
     /// Of the number of points on the curve.
@@ -51,129 +52,98 @@ impl ZSobol {
         if log2_points > 63 {
             return Err(too_large);
         }
-        Ok(Self { width, log2_paths, log2_points, seed })
+        Ok(Self { size: [width, height], log2_paths, log2_points, seed })
     }
 }
 
 impl SamplerFamily for ZSobol {
     type Sampler = ZSobolSampler;
 
-    /// Indices beyond the number of paths start other, independent points.
+    /// Indices beyond the number of paths start other, independent points. Streams beyond the pixels of the image are
+    /// randomisations of their own, with points in the order of the index, shuffled in base 4.
     #[inline]
     fn sampler(&self, stream: u64, index: u64) -> ZSobolSampler {
-        let [x, y] = [stream % u64::from(self.width), stream / u64::from(self.width)];
+        let Some([x, y]) = pixel_of(stream, self.size) else {
+            let pattern = combine(combine(combine(0, self.seed), stream), index >> 32);
+            return ZSobolSampler::new(index & 0xffff_ffff, 32, pattern);
+        };
         let round = index >> self.log2_paths;
         let place = index & ((1 << self.log2_paths) - 1);
-        let pixel = spread(x as u32) | (spread(y as u32) << 1);
-        ZSobolSampler {
-            morton: (pixel << self.log2_paths) | place,
-            pattern: combine(combine(0, self.seed), round),
-            dimension: 0,
-            log2_points: self.log2_points as u8,
-        }
+        let place = (z_order(x, y) << self.log2_paths) | place;
+        ZSobolSampler::new(place, self.log2_points, combine(combine(0, self.seed), round))
     }
-}
-
-/// Moves bit `i` to bit `2 i`.
-#[inline]
-fn spread(x: u32) -> u64 {
-    let mut x = u64::from(x);
-    for (shift, mask) in [
-        (16, 0x0000_ffff_0000_ffff),
-        (8, 0x00ff_00ff_00ff_00ff),
-        (4, 0x0f0f_0f0f_0f0f_0f0f),
-        (2, 0x3333_3333_3333_3333),
-        (1, 0x5555_5555_5555_5555),
-    ] {
-        x = (x | (x << shift)) & mask;
-    }
-    x
 }
 
 /// The sampler of [`ZSobol`], 24 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ZSobolSampler {
-    /// Place on the curve and number of the path.
-    morton: u64,
+    /// Place on the curve and number of the path, with the highest of their bits lowest.
+    reversed: u64,
     /// Hash of the seed and the forks.
     pattern: u64,
     dimension: u32,
     log2_points: u8,
 }
 
-/// The permutations of four things, two bits each.
-const PERMUTATIONS: [u8; 24] = {
-    let mut all = [0; 24];
-    let mut n = 0;
-    let mut code = 0_u16;
-    while code < 256 {
-        let (a, b, c, d) = (code & 3, (code >> 2) & 3, (code >> 4) & 3, code >> 6);
-        if (1 << a) | (1 << b) | (1 << c) | (1 << d) == 15 {
-            all[n] = code as u8;
-            n += 1;
-        }
-        code += 1;
-    }
-    all
-};
-
-/// A hash of the digits above one, with the well mixed `key`; its high half is good.
-#[inline]
-const fn digit_hash(above: u64, key: u64) -> u64 {
-    let hash = (above ^ key).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    (hash ^ (hash >> 32)).wrapping_mul(0x94d0_49bb_1331_11eb)
-}
-
 impl ZSobolSampler {
-    /// The index in the sequence: the permuted digits of the place on the curve, with the random number `key`.
+    /// Point `place` of 2^`log2_points` on the curve.
     #[inline]
-    fn index(&self, key: u64) -> u64 {
-        let odd = self.log2_points % 2;
-        let mut index = 0;
-        let mut shift = u32::from(self.log2_points);
-        // Permute digits in base 4, from the highest: one of 24 permutations, hashed from the digits above.
-        while shift > u32::from(odd) {
-            let hash = digit_hash(self.morton >> shift, key);
-            shift -= 2;
-            let choice = ((hash >> 32) * 24) >> 32;
-            let digit = (self.morton >> shift) & 3;
-            index |= (u64::from(PERMUTATIONS[choice as usize] >> (2 * digit)) % 4) << shift;
-        }
-        // A single bit may be left over.
-        if odd == 1 {
-            index |= (self.morton & 1) ^ (digit_hash(self.morton >> 1, key) >> 63);
-        }
-        index
+    const fn new(place: u64, log2_points: u32, pattern: u64) -> Self {
+        Self { reversed: reverse(place, log2_points), pattern, dimension: 0, log2_points: log2_points as u8 }
     }
 
-    /// Random numbers of the next dimensions: for the order and for the digits.
+    /// The index of the point in the Sobol sequence, and random numbers for the digits of two coordinates.
     #[inline]
-    fn keys(&mut self, dimensions: u32) -> (u64, u64) {
+    fn next(&mut self, dimensions: u32) -> (u64, [u32; 2]) {
         let key = combine(self.pattern, u64::from(self.dimension));
         self.dimension = self.dimension.wrapping_add(dimensions);
-        (key, combine(key, 0))
+        let bits = u32::from(self.log2_points);
+        let index = reverse(permute_base_4(self.reversed, bits, key), bits);
+        (index, [seeds(key)[3], key as u32])
     }
+}
+
+/// The `bits` low bits in reverse order.
+#[inline]
+const fn reverse(number: u64, bits: u32) -> u64 {
+    // In two steps, for there may be no bits.
+    number.reverse_bits() >> (63 - bits) >> 1
 }
 
 impl Sampler for ZSobolSampler {
     #[inline]
     fn next_1d(&mut self) -> f32 {
-        let (order, digits) = self.keys(1);
-        f32_from_bits(owen_hash_u32(sobol_bits_u32(self.index(order), 0), digits as u32))
+        let (index, [seed, _]) = self.next(1);
+        f32_from_bits(laine_karras(index as u32, seed).reverse_bits())
     }
 
     #[inline]
     fn next_2d(&mut self) -> [f32; 2] {
-        let (order, digits) = self.keys(2);
-        let index = self.index(order);
-        let seeds = [digits as u32, (digits >> 32) as u32];
-        [0, 1].map(|d| f32_from_bits(owen_hash_u32(sobol_bits_u32(index, d), seeds[d as usize])))
+        let (index, seeds) = self.next(2);
+        // The first two coordinates with their digits reversed.
+        let point = [index as u32, reversed_second(index) as u32];
+        [0, 1].map(|k| f32_from_bits(laine_karras(point[k], seeds[k]).reverse_bits()))
     }
 
     #[inline]
     fn fork(&self, domain: u32) -> Self {
         Self { pattern: combine(self.pattern ^ 0x5bd1_e995, u64::from(domain)), dimension: 0, ..*self }
+    }
+}
+
+impl Split for ZSobolSampler {
+    /// The children go on along the curve below their path: stratified against each other, against those of the other
+    /// paths of the pixel, and against those of the pixels around. Counted as the next power of two; what does not fit into
+    /// 63 bits with the points of the image is independent.
+    #[inline]
+    fn split(&self, domain: u32, children: u32, child: u32) -> Self {
+        let wanted = children.max(1).checked_next_power_of_two().map_or(32, u32::ilog2);
+        let (used, child) = (u32::from(self.log2_points), u64::from(child));
+        let bits = wanted.min(63 - used);
+        let place = (reverse(self.reversed, used) << bits) | (child & ((1 << bits) - 1));
+        let pattern = combine(combine(self.pattern ^ 0x5bd1_e995, u64::from(domain)), u64::from(children));
+        Self::new(place, used + bits, combine(pattern, child >> bits))
     }
 }
 
@@ -212,6 +182,6 @@ mod tests {
         let family = ZSobol::new(3840, 2160, 1 << 16, 0).unwrap();
         assert!(family.sampler(3840 * 2160 - 1, 1 << 40).next_2d()[0] < 1.0);
         assert!(ZSobol::new(0, 1, 1, 0).is_err() && ZSobol::new(1 << 31, 1 << 31, 4, 0).is_err());
-        assert_eq!(PERMUTATIONS[23], 0b11_10_01_00);
+        assert!(ZSobol::new(1, 1, 1, 0).unwrap().sampler(0, 0).next_2d()[1] < 1.0);
     }
 }

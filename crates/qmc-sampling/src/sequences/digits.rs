@@ -62,12 +62,6 @@ impl DigitScramble {
         }
     }
 
-    /// The radical inverse to 32 bits: enough for single precision, and faster.
-    #[inline]
-    pub(crate) fn radical_inverse_short(self, base: u32, index: u64, dimension: u32) -> f64 {
-        self.mirror(base, dimension, 32, digits_of(base, index))
-    }
-
     /// The fraction with the given digits, from the first one on, randomised, to a precision of so many bits.
     pub(crate) fn mirror(self, base: u32, dimension: u32, bits: u32, mut digit: impl FnMut() -> u32) -> f64 {
         let (mut mirrored, mut scale) = (0, 1_u64);

@@ -10,6 +10,7 @@
 //! | [`Random`] | | any | the baseline |
 //!
 //! [`CranleyPatterson`] randomises any of them by a random shift.
+mod base;
 mod digits;
 mod error;
 mod faure;
@@ -32,4 +33,5 @@ pub use rotation::CranleyPatterson;
 pub use stratified::{MultiJittered, Stratified};
 pub use van_der_corput::VanDerCorput;
 
+pub(crate) use base::Base;
 pub(crate) use digits::permute;

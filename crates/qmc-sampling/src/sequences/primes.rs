@@ -4,7 +4,7 @@
 pub const PRIMES: u32 = 1024;
 
 /// The first primes, by trial division.
-static TABLE: [u16; PRIMES as usize] = {
+pub(super) static TABLE: [u16; PRIMES as usize] = {
     let mut table = [2; PRIMES as usize];
     let (mut count, mut candidate) = (1, 3_u16);
     while count < table.len() {

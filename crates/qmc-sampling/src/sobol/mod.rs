@@ -41,12 +41,18 @@ pub fn sobol_bits(index: u64, dimension: u32) -> u64 {
 #[inline]
 #[must_use]
 pub fn sobol_bits_u32(index: u64, dimension: u32) -> u32 {
+    reversed_u32(index, dimension).reverse_bits()
+}
+
+/// The digits of [`sobol_bits_u32`] in reverse order, the first one in the lowest bit.
+#[inline]
+pub(crate) fn reversed_u32(index: u64, dimension: u32) -> u32 {
     let (low, high) = (index as u32, index >> 32);
     if dimension >= tables::DIMENSIONS {
-        return (sobol_bits(index, dimension) >> 32) as u32;
+        return ((sobol_bits(index, dimension) >> 32) as u32).reverse_bits();
     }
-    let bits = tables::product(low, dimension);
-    if high == 0 { bits } else { bits ^ (sobol_bits(high << 32, dimension) >> 32) as u32 }
+    let digits = tables::reversed_product(low, dimension);
+    if high == 0 { digits } else { digits ^ ((sobol_bits(high << 32, dimension) >> 32) as u32).reverse_bits() }
 }
 
 /// The generator matrix of a dimension: column `i` is what bit `i` of the index contributes, first digit in bit 63.
@@ -56,6 +62,22 @@ pub fn sobol_bits_u32(index: u64, dimension: u32) -> u32 {
 #[must_use]
 pub fn generator_matrix(dimension: u32) -> &'static [u64; INDEX_BITS as usize] {
     &directions::COLUMNS[dimension as usize]
+}
+
+/// The second coordinate of point `index` with its digits reversed: the first digit is the lowest bit, 64 digits count.
+///
+/// The generator matrix is Pascal's triangle modulo 2, in which entry `(j, i)` is one if the bits of `j` are among those
+/// of `i` (Lucas): so digit `j` is the sum of the bits `i` of the index over all supersets `i` of `j`, one step for each
+/// of the six bits that the position of a bit has. The first coordinate, reversed, is the index itself.
+#[inline]
+pub(crate) const fn reversed_second(index: u64) -> u64 {
+    let mut digits = index;
+    digits ^= (digits >> 1) & 0x5555_5555_5555_5555;
+    digits ^= (digits >> 2) & 0x3333_3333_3333_3333;
+    digits ^= (digits >> 4) & 0x0f0f_0f0f_0f0f_0f0f;
+    digits ^= (digits >> 8) & 0x00ff_00ff_00ff_00ff;
+    digits ^= (digits >> 16) & 0x0000_ffff_0000_ffff;
+    digits ^ (digits >> 32)
 }
 
 #[cfg(test)]
@@ -102,6 +124,14 @@ mod tests {
                     "point {i} dimension {dimension}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn the_second_dimension_is_pascals_triangle() {
+        for i in 0..500_u64 {
+            let index = (i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (i % 60)) & ((1 << INDEX_BITS) - 1);
+            assert_eq!(reversed_second(index).reverse_bits(), sobol_bits(index, 1), "point {index}");
         }
     }
 

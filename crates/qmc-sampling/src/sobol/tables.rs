@@ -96,9 +96,9 @@ pub(crate) fn reversed_group(index: u32, group: u32) -> [u32; 4] {
     sum
 }
 
-/// Coordinate `dimension` of point `index`. `dimension` is below 256.
+/// Coordinate `dimension` of point `index`, bit-reversed. `dimension` is below 256.
 #[inline]
-pub(crate) fn product(index: u32, dimension: u32) -> u32 {
+pub(crate) fn reversed_product(index: u32, dimension: u32) -> u32 {
     let (group, lane) = ((dimension / 4) as usize, (dimension % 4) as usize);
     let mut sum = 0;
     let mut rest = index;
@@ -106,7 +106,7 @@ pub(crate) fn product(index: u32, dimension: u32) -> u32 {
         sum ^= table[(rest & 15) as usize][lane];
         rest >>= 4;
     }
-    sum.reverse_bits()
+    sum
 }
 
 #[cfg(test)]
@@ -142,7 +142,7 @@ mod tests {
         for index in [0, 1, 2, 0x1234_5678, u32::MAX] {
             assert_eq!(reversed_group(index, 0), reversed_4d(index.reverse_bits()));
             for group in [0, 1, 17, 63] {
-                let single = [0, 1, 2, 3].map(|lane| product(index, 4 * group + lane).reverse_bits());
+                let single = [0, 1, 2, 3].map(|lane| reversed_product(index, 4 * group + lane));
                 assert_eq!(reversed_group(index, group), single);
             }
         }

@@ -1,0 +1,72 @@
+//! Experiments: each reproduces a figure or a claim, and writes down what was measured.
+//!
+//! An experiment is a function from a [`Context`] to a [`Report`]. `lichtwerk experiment NAME` runs it and writes the report
+//! as `report.json`; what else it makes (pictures) it saves through the context. To add one: a file here, a line in
+//! [`EXPERIMENTS`].
+//!
+//! - [`Context`]: how much effort, which seeds, which folder.
+//! - [`Report`], [`Row`], [`Claim`]: the contents of `report.json`.
+//! - [`Setup`]: a builtin scene with settings, rendered with one seed after the other.
+//! - [`Trials`]: renderings of one setting with several seeds, against a reference; [`ratio_of_means`] compares two.
+
+mod context;
+mod report;
+mod samplers;
+mod setup;
+mod trials;
+
+use crate::program::Failure;
+
+pub use context::Context;
+pub use report::{Claim, Report, Row};
+pub use setup::Setup;
+pub use trials::{Ratio, Trials, ratio_of_means};
+
+/// What `lichtwerk experiment` can run.
+#[derive(Clone, Copy, Debug)]
+pub struct Experiment {
+    /// The name by which it is asked for.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub about: &'static str,
+    measure: fn(&Context) -> Result<Report, Failure>,
+}
+
+/// All experiments.
+pub const EXPERIMENTS: &[Experiment] = &[Experiment {
+    name: "samplers",
+    about: "what each sampler gains over independent numbers, on the Cornell box at 64 samples per pixel",
+    measure: samplers::measure,
+}];
+
+impl Experiment {
+    /// The experiment of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        EXPERIMENTS.iter().copied().find(|experiment| experiment.name == name)
+    }
+
+    /// Runs it, and writes `report.json` into the context's folder.
+    ///
+    /// # Errors
+    /// What the experiment fails of, or a file that cannot be written.
+    pub fn run(&self, context: &Context) -> Result<Report, Failure> {
+        context.prepare_folder()?;
+        let report = (self.measure)(context)?;
+        context.write_report(&report)?;
+        Ok(report)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn experiments_are_found_by_their_names() {
+        for experiment in EXPERIMENTS {
+            assert_eq!(Experiment::named(experiment.name).map(|found| found.about), Some(experiment.about));
+            assert_ne!(experiment.name, "all", "this means all of them");
+        }
+        assert!(Experiment::named("nothing").is_none());
+    }
+}
