@@ -45,7 +45,8 @@ fn any_differs(a: Rgb, b: Rgb, relative: f32) -> bool {
     (0..3).any(|c| differs(a[c], b[c], relative))
 }
 
-/// The frame of the hit that the values are for, and the local one, perturbed.
+/// The shading frame at the hit that the values are for. Unlike ours, Mitsuba's `flip_invalid_normals` mirrors a normal that
+/// turns away from `wo` at the one that it replaces, which here is z.
 fn local_frame(material: &CompiledMaterial, wo: Vec3A) -> Frame {
     let input = ShadingInput {
         uv: [0.3, 0.4],
@@ -54,7 +55,9 @@ fn local_frame(material: &CompiledMaterial, wo: Vec3A) -> Frame {
         shading_normal: Vec3A::Z,
         geometric_normal: Vec3A::Z,
     };
-    material.shading_frame_towards(&input, wo)
+    let normal = material.shading_frame(&input).z;
+    let is_invalid = wo.z * wo.dot(normal) < 0.0;
+    Frame::from_z_and_tangent(if is_invalid { normal.with_x(-normal.x).with_y(-normal.y) } else { normal }, input.dpdu)
 }
 
 #[test]
