@@ -210,8 +210,8 @@ impl CompiledMaterial {
     /// The frame in which directions are handed to the [`Bsdf`]: z is the shading normal after bump and normal mapping,
     /// x lies along `dpdu`. It does not depend on any direction, as bidirectional methods need it.
     ///
-    /// Where light crosses the original but not the perturbed surface, or the other way around, the frame alone decides, as in
-    /// Mitsuba 3.
+    /// Where light crosses the original but not the perturbed surface, or the other way around, the frame alone decides. So
+    /// does Mitsuba 3 for interpolated normals; its bump and normal maps pass nothing there.
     #[inline]
     pub fn shading_frame(&self, input: &ShadingInput) -> Frame {
         let normal = self.normals.iter().fold(input.shading_normal, |normal, map| map.perturb(normal, input));

@@ -73,7 +73,7 @@ fn values_and_densities() {
         let [local_o, local_i] = [wo, wi].map(|w| frame.to_local(w));
         let (mut value, mut pdf) = material.resolve([0.3, 0.4]).eval_pdf(local_o, local_i, row.mode());
         if wi.z * local_i.z <= 0.0 {
-            // The rule of bump maps that vertices apply.
+            // Mitsuba's bump and normal maps pass nothing across the surface that they tilt. Ours let the frame decide.
             (value, pdf) = (Rgb::ZERO, 0.0);
         }
         // Beckmann's density is exact here, that of Mitsuba has the error of its masking approximation; the choice of
