@@ -6,8 +6,8 @@ identically distributed numbers, whatever happens inside a batch (stratification
     t = (mean_a - mean_b) / sqrt(s_a^2 / n_a + s_b^2 / n_b)
 
 compares the two expectations. Radiance estimates are heavy-tailed: that makes t conservative as long as both sides have the same
-tail, and many small batches (at least 16 a side) keep it so where they differ a little. Nothing is clamped. Holm's step-down procedure
-shares one error rate among all tests of a scene.
+tail, and many small batches (at least 16 a side) keep it so where they differ a little. Nothing is clamped unless that is asked for
+(`clamped`). Holm's step-down procedure shares one error rate among all tests of a scene.
 """
 
 import math
@@ -119,6 +119,19 @@ def compare(ours, theirs, size, alpha):
         for c, name in enumerate(CHANNELS)
     ]
     return {"tests": int(p.size), "alpha": alpha, "blocks": blocks, "channels": channels}, t
+
+
+def clamped(ours, theirs, times):
+    """Both stacks with their pixels clamped at `times` the median pixel that Mitsuba's mean image has.
+
+    For images of one sample per pixel only. Then a pixel is one sample, and if both renderers sample paths alike (same techniques,
+    densities, weights, Russian roulette) samples are equal in law, and so is the expectation of every function of them. The
+    clamped one is bounded: t has its distribution, however heavy the tail was. What is lost is the part of the light
+    above the bound. A difference is either wrong light or another way of sampling, and has to be looked into.
+    """
+    mean = theirs.mean(axis=0)
+    limit = times * np.median(mean[mean > 0]) if (mean > 0).any() else np.inf
+    return np.minimum(ours, limit), np.minimum(theirs, limit)
 
 
 def clamped_ratios(ours, theirs):

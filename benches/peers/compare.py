@@ -34,6 +34,8 @@ def is_known(block, scene, size, known):
 def judge(scene, ours, theirs, options, alpha, known, folder):
     """Compare two stacks, write picture and JSON, print the verdict; the number of unexplained differences."""
     height, width = ours.shape[1:3]
+    if options.clamp:
+        ours, theirs = blocks.clamped(ours, theirs, options.clamp)
     result, t = blocks.compare(ours, theirs, options.block, alpha)
     result["clamped"] = blocks.clamped_ratios(ours, theirs)
     for block in result["blocks"]:
@@ -80,13 +82,14 @@ def run(options):
             for renderer in (ours, theirs):
                 renderer.load(file, scene, width, height, depth)
             stacks = [batches(renderer, options.batches, options.spp, seed)
-                      for renderer, seed in ((ours, OUR_SEEDS), (theirs, THEIR_SEEDS))]
+                      for renderer, seed in ((ours, OUR_SEEDS + options.seed), (theirs, THEIR_SEEDS + options.seed))]
             bad[scene.name] = judge(scene, *stacks, options, alpha, known, folder)
         theirs.close()
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
     summary = {"machine": machine.stamp(options.root), "versions": {**ours.versions, **theirs.versions}, "variant": options.variant,
-               "batches": options.batches, "spp_per_batch": options.spp, "block": options.block, "alpha": options.alpha, "differing": bad}
+               "batches": options.batches, "spp_per_batch": options.spp, "block": options.block, "alpha": options.alpha,
+               "clamp": options.clamp, "seed": options.seed, "differing": bad}
     (folder / "summary.json").write_text(json.dumps(summary, indent=1))
     print(f"\nwritten to {folder}")
     return 1 if any(bad.values()) else 0
@@ -108,7 +111,7 @@ def selftest(options):
             file = scenes.with_box_filter(scene, options.assets, scratch / "scenes")
             width, height = scene.size(options.scale)
             renderer.load(file, scene, width, height, options.max_depth or scene.max_depth)
-            a, b = (batches(renderer, options.batches, options.spp, seed) for seed in (OUR_SEEDS, THEIR_SEEDS))
+            a, b = (batches(renderer, options.batches, options.spp, seed + options.seed) for seed in (OUR_SEEDS, THEIR_SEEDS))
             patch = a.copy()
             patch[:, : height // 2, : width // 4] *= 1.15
             for name, stack, expected in (("equal", a, False), ("brighter by 1 %", a * 1.01, True), ("patch brighter by 15 %", patch, True)):

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def parse():
     parser = argparse.ArgumentParser(prog="benches/peers/run.sh", description=__doc__)
     parser.add_argument("mode", choices=["compare", "speed", "selftest", "all"])
-    parser.add_argument("scenes", nargs="*", help="scene names; all five for compare, cornell-box and modern-hall for speed")
+    parser.add_argument("scenes", nargs="*", help="scene names; all of scenes.py for compare, cornell-box and modern-hall for speed")
     parser.add_argument("--assets", type=Path, default=ROOT.parent / "shared" / "assets")
     parser.add_argument("--lichtwerk", type=Path, default=ROOT / "target" / "release" / "lichtwerk", help="the program")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "peers")
@@ -26,8 +26,10 @@ def parse():
     parser.add_argument("--variant", help="Mitsuba variant for compare; llvm_ad_rgb if it works, else scalar_rgb")
     test = parser.add_argument_group("compare, selftest")
     test.add_argument("--batches", type=int, default=32, help="independent seeds per renderer, at least 16")
+    test.add_argument("--seed", type=int, default=0, help="added to all seeds: another number, an independent repetition")
     test.add_argument("--block", type=int, default=8, help="pixels a side")
     test.add_argument("--alpha", type=float, default=1e-4, help="false-positive rate of the whole run, shared by Holm")
+    test.add_argument("--clamp", type=float, help="compare bounded samples: pixels of single samples (--spp 1) end at this many times the median")
     test.add_argument("--worst", type=int, default=5, help="blocks to print per scene")
     test.add_argument("--known", type=Path, default=Path(__file__).with_name("known_differences.json"))
     race = parser.add_argument_group("speed")
@@ -38,6 +40,8 @@ def parse():
     options = parser.parse_args()
     if options.batches < 16 and options.mode != "speed":
         parser.error("--batches below 16 leaves the t statistic no ground under heavy tails")
+    if options.clamp is not None and (options.spp != 1 or options.clamp <= 0):
+        parser.error("--clamp takes a positive number and needs --spp 1: only single samples are distributed alike in both renderers")
     if not options.assets.is_dir():
         parser.error(f"no folder {options.assets}; give one with --assets")
     options.root = ROOT

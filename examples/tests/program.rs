@@ -270,6 +270,54 @@ fn scenes_that_are_none_have_one_line_reasons() {
     assert!(!folder.join("a.exr").exists() || fs::remove_file(folder.join("a.exr")).is_ok());
 }
 
+/// A binary PLY mesh of one triangle with these corners and indices.
+fn triangle_file(corners: [[f32; 3]; 3], indices: [u32; 3]) -> Vec<u8> {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                  property float z\nelement face 1\nproperty list uchar uint vertex_indices\nend_header\n";
+    let corners = corners.into_iter().flatten().flat_map(f32::to_le_bytes);
+    header.bytes().chain(corners).chain([3]).chain(indices.into_iter().flat_map(u32::to_le_bytes)).collect()
+}
+
+#[test]
+fn damaged_meshes_and_images_have_one_line_reasons() {
+    const CORNERS: [[f32; 3]; 3] = [[-1.0, -1.0, 5.0], [1.0, -1.0, 5.0], [0.0, 1.0, 5.0]];
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let render = |scene| ["render", scene, "--size", "8x6", "--spp", "1", "--out", "a.exr"];
+    let lit =
+        "<emitter type=\"constant\"/>\n<shape type=\"ply\"><string name=\"filename\" value=\"mesh.ply\"/></shape>";
+    scene_file(folder, "mesh.xml", lit);
+    let whole = triangle_file(CORNERS, [0, 1, 2]);
+    fs::write(folder.join("mesh.ply"), &whole).unwrap();
+    succeeds(folder, &render("mesh.xml"));
+    for length in [0, 100, whole.len() - 14, whole.len() - 1] {
+        fs::write(folder.join("mesh.ply"), &whole[..length]).unwrap();
+        fails(folder, &render("mesh.xml"), &["mesh.ply", "mesh.xml:4"]);
+    }
+    fs::write(folder.join("mesh.ply"), triangle_file(CORNERS, [0, 1, 3])).unwrap();
+    fails(folder, &render("mesh.xml"), &["mesh.ply", "vertex 3"]);
+
+    // A triangle with a corner that is no point is left out, and counted.
+    fs::write(folder.join("mesh.ply"), triangle_file([[f32::NAN, 0.0, 5.0], CORNERS[1], CORNERS[2]], [0, 1, 2]))
+        .unwrap();
+    let output = run(folder, &render("mesh.xml"));
+    let message = text(&output.stderr);
+    assert!(
+        output.status.success() && message.starts_with("warning: ") && message.contains("dropped 1 triangles"),
+        "{message}"
+    );
+
+    succeeds(folder, &tiny(&["--out", "sky.exr"]));
+    let sky = fs::read(folder.join("sky.exr")).unwrap();
+    let envmap = "<emitter type=\"envmap\"><string name=\"filename\" value=\"sky.exr\"/></emitter>";
+    scene_file(folder, "sky.xml", envmap);
+    succeeds(folder, &render("sky.xml"));
+    for length in [0, 100, sky.len() / 2, sky.len() - 2] {
+        fs::write(folder.join("sky.exr"), &sky[..length]).unwrap();
+        fails(folder, &render("sky.xml"), &["sky.exr", "sky.xml:3"]);
+    }
+}
+
 #[test]
 fn nonsense_on_the_command_line_is_status_2() {
     let folder = tempfile::tempdir().unwrap();
@@ -277,6 +325,9 @@ fn nonsense_on_the_command_line_is_status_2() {
         (&["--size", "0x8"][..], "at least one pixel"),
         (&["--size", "8"], "WIDTHxHEIGHT"),
         (&["--spp", "99999999999999"], "not in 1..="),
+        (&["--spp", "0"], "not in 1..="),
+        (&["--spp", "-1"], "unexpected argument '-1'"),
+        (&["--size", "-8x8"], "unexpected argument '-8'"),
         (&["--time", "-3"], "positive number"),
         (&["--max-depth", "0"], "segments"),
         (&["--estimator", "magic"], "possible values: path"),

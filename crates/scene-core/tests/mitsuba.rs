@@ -6,10 +6,11 @@ mod mitsuba_support;
 
 use mitsuba_support::{folder, import, load};
 use scene_core::Rgb;
+use scene_core::film::Filter;
 use scene_core::glam::{Affine3A, Vec3A};
 use scene_core::material::{Distribution, Material};
 use scene_core::mitsuba;
-use scene_core::reference::{FilterDescription, Light, SceneDescription, Shape};
+use scene_core::reference::{Light, SceneDescription, Shape};
 use scene_core::texture::{Interpolation, Texture, Wrap};
 
 const TRIANGLE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.75\nf 1/1 2/1 3/1\n";
@@ -43,7 +44,7 @@ fn fov_x(content: &str) -> f32 {
 fn cameras() {
     let scene = sensor("");
     assert_eq!((scene.camera.width, scene.camera.height, scene.camera.aperture_radius), (768, 576, 0.0));
-    assert_eq!(scene.filter, FilterDescription::Gaussian { standard_deviation: 0.5 });
+    assert_eq!(scene.filter, Filter::GAUSSIAN);
     let film = r#"<film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="100"/></film>"#;
     for (content, expected) in [
         (String::new(), 38.1848),
@@ -66,12 +67,9 @@ fn cameras() {
 #[test]
 fn films_filters_samplers_and_integrators() {
     for (rfilter, expected) in [
-        (r#"<rfilter type="box"/>"#, FilterDescription::Box),
-        (r#"<rfilter type="tent"/>"#, FilterDescription::Tent { radius: 1.0 }),
-        (
-            r#"<rfilter type="gaussian"><float name="stddev" value="0.8"/></rfilter>"#,
-            FilterDescription::Gaussian { standard_deviation: 0.8 },
-        ),
+        (r#"<rfilter type="box"/>"#, Filter::BOX),
+        (r#"<rfilter type="tent"/>"#, Filter::TENT),
+        (r#"<rfilter type="gaussian"><float name="stddev" value="0.8"/></rfilter>"#, Filter::gaussian(0.8).unwrap()),
     ] {
         assert_eq!(sensor(&format!("<film type=\"hdrfilm\">{rfilter}</film>")).filter, expected);
     }
@@ -395,7 +393,7 @@ fn parameters_and_includes() {
     ]);
     let path = directory.path().join("scene.xml");
     let scene = mitsuba::load(&path, &[("size".into(), "32".into()), ("typo".into(), "1".into())]).unwrap();
-    assert_eq!((scene.camera.width, scene.filter, scene.instances.len()), (32, FilterDescription::Box, 2));
+    assert_eq!((scene.camera.width, scene.filter, scene.instances.len()), (32, Filter::BOX, 2));
     assert_eq!(scene.source.as_deref(), Some(path.as_path()));
     assert_eq!(scene.warnings.len(), 1);
     assert!(scene.warnings[0].ends_with("the scene has no parameter `$typo`"), "{:?}", scene.warnings);

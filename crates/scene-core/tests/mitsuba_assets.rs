@@ -5,9 +5,10 @@
 mod mitsuba_support;
 
 use mitsuba_support::assets;
+use scene_core::film::Filter;
 use scene_core::glam::Vec3A;
 use scene_core::mitsuba;
-use scene_core::reference::{FilterDescription, Light, SceneDescription, Shape};
+use scene_core::reference::{Light, SceneDescription, Shape};
 
 fn load(name: &str, parameters: &[(&str, &str)]) -> Option<SceneDescription> {
     let Some(assets) = assets() else {
@@ -89,7 +90,7 @@ fn cornell_box() {
     assert_eq!((scene.instances.len(), scene.materials.len(), area_lights(&scene)), (8, 8, 1));
     assert_eq!((scene.camera.width, scene.camera.height), (64, 1024));
     assert_eq!((scene.max_depth, scene.samples_per_pixel), (Some(30), Some(64)));
-    assert_eq!(scene.filter, FilterDescription::Tent { radius: 1.0 });
+    assert_eq!(scene.filter, Filter::TENT);
     assert!((scene.camera.fov_x.to_degrees() - 19.5).abs() < 1e-4);
     assert!((scene.camera.to_world.transform_point3a(Vec3A::Z) - Vec3A::new(0.0, 1.0, 5.8)).length() < 1e-5);
     assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);

@@ -163,7 +163,16 @@ fn bad_sensors() {
         assert!(message.ends_with(&format!("`width` is {value}, not within 1 and 65536")), "{message}");
     }
     assert!(film(r#"<integer name="crop_width" value="5"/>"#).ends_with("a crop window is not supported"));
-    assert!(film(r#"<rfilter type="tent"><float name="radius" value="0"/></rfilter>"#).contains("not positive"));
+    for (filter, expected) in [
+        (r#"<rfilter type="tent"><float name="radius" value="0"/></rfilter>"#, "radius of the tent filter is 0,"),
+        (r#"<rfilter type="tent"><float name="radius" value="1e9"/></rfilter>"#, "at most 64 pixels"),
+        (
+            r#"<rfilter type="gaussian"><float name="stddev" value="-1"/></rfilter>"#,
+            "standard deviation of the Gaussian",
+        ),
+    ] {
+        assert!(film(filter).contains(expected), "{}", film(filter));
+    }
     for value in ["0", "180", "-3"] {
         assert!(
             sensor("perspective", &format!("<float name=\"fov\" value=\"{value}\"/>")).contains("no angle of view")

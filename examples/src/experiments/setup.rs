@@ -7,7 +7,7 @@ use scene_core::film::LayeredImage;
 use scene_core::{ReferenceScene, Scene};
 
 use super::Context;
-use crate::program::{Failure, RenderSettings, estimate, filter_of};
+use crate::program::{Failure, RenderSettings, estimate};
 use crate::render::{Budget, Rendering};
 
 /// A scene, and the settings that all renderings of it share.
@@ -28,7 +28,7 @@ impl Setup {
         let builtin = Builtin::named(name).ok_or_else(|| format!("there is no builtin scene '{name}'"))?;
         let mut description = builtin.description();
         (description.camera.width, description.camera.height) = (width, height);
-        let filter = filter_of(description.filter)?;
+        let filter = description.filter;
         let max_depth = description.max_depth.unwrap_or(u32::MAX);
         let scene = ReferenceScene::new(description)?;
         let ao_distance = 0.1 * scene.bounding_sphere().1;

@@ -12,7 +12,6 @@ use clap::Parser;
 
 pub use arguments::{Arguments, Command, DiffArguments, ExperimentArguments, RenderArguments, ShowcaseArguments};
 pub use load::{LoadError, load_description};
-pub(crate) use render::filter_of;
 pub use render::{EstimatorName, RenderSettings, estimate, render_to_image};
 
 pub use crate::samplers::SamplerName;

@@ -6,10 +6,8 @@ use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
 use qmc_sampling::{Independent, OwenSobol, SamplerFamily};
-use scene_core::film::{Filter, FilterError, LayeredImage};
-use scene_core::reference::FilterDescription;
+use scene_core::film::{Filter, LayeredImage};
 use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
-
 use vpl_gi::{LightTracing, Residual, RobustIgi};
 
 use super::{Failure, RenderArguments, load_description, report};
@@ -52,11 +50,11 @@ pub enum FilterName {
 }
 
 impl FilterName {
-    fn description(self) -> FilterDescription {
+    fn filter(self) -> Filter {
         match self {
-            Self::Box => FilterDescription::Box,
-            Self::Tent => FilterDescription::Tent { radius: 1.0 },
-            Self::Gaussian => FilterDescription::Gaussian { standard_deviation: 0.5 },
+            Self::Box => Filter::BOX,
+            Self::Tent => Filter::TENT,
+            Self::Gaussian => Filter::GAUSSIAN,
         }
     }
 }
@@ -222,15 +220,6 @@ fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderS
     let _ = image.set_attribute(scene_core::film::SAMPLES_PER_PIXEL, rendering.samples);
 }
 
-/// Makes the filter that a scene asks for.
-pub(crate) fn filter_of(description: FilterDescription) -> Result<Filter, FilterError> {
-    match description {
-        FilterDescription::Box => Ok(Filter::BOX),
-        FilterDescription::Tent { radius } => Filter::tent(radius),
-        FilterDescription::Gaussian { standard_deviation } => Filter::gaussian(standard_deviation),
-    }
-}
-
 /// Loads, renders, writes.
 pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     // Load and build the scene.
@@ -239,7 +228,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     if let Some([width, height]) = arguments.size {
         (description.camera.width, description.camera.height) = (width, height);
     }
-    let filter = filter_of(arguments.filter.map_or(description.filter, FilterName::description))?;
+    let filter = arguments.filter.map_or(description.filter, FilterName::filter);
     let samples = arguments.spp.or(description.samples_per_pixel.map(u64::from)).unwrap_or(64);
     let max_depth = arguments.max_depth.or(description.max_depth).unwrap_or(u32::MAX);
     let name = description.name.clone();

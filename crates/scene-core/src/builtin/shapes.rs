@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Mat3, Vec3, Vec3A};
 
+use crate::film::Filter;
 use crate::material::Material;
 use crate::reference::{
-    CameraDescription, FilterDescription, Instance, Light, MaterialId, SceneDescription, Shape, ShapeId, TriangleMesh,
+    CameraDescription, Instance, Light, MaterialId, SceneDescription, Shape, ShapeId, TriangleMesh,
 };
 use crate::traits::Rgb;
 
@@ -51,7 +52,7 @@ impl SceneBuilder {
                     width: 512,
                     height: 512,
                 },
-                filter: FilterDescription::Box,
+                filter: Filter::BOX,
                 max_depth: None,
                 samples_per_pixel: None,
                 warnings: Vec::new(),

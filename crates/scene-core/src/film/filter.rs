@@ -73,6 +73,12 @@ impl Filter {
     /// The mean over the pixel.
     pub const BOX: Self = Self(Kind::Box);
 
+    /// The tent of radius one pixel.
+    pub const TENT: Self = Self(Kind::Tent { radius: 1.0 });
+
+    /// The Gaussian with a standard deviation of half a pixel, which Mitsuba 3 uses unless told otherwise.
+    pub const GAUSSIAN: Self = Self(Kind::Gaussian { standard_deviation: 0.5 });
+
     /// A tent that falls to zero at `radius` pixels.
     ///
     /// # Errors
@@ -86,7 +92,7 @@ impl Filter {
         }
     }
 
-    /// A Gaussian, cut off at four standard deviations (given in pixels). Mitsuba's default is 0.5.
+    /// A Gaussian, cut off at four standard deviations (given in pixels).
     ///
     /// # Errors
     /// [`FilterError::StandardDeviation`] unless `0 < standard_deviation <= 16`; NaN is such a case.
@@ -149,13 +155,7 @@ mod tests {
     use super::*;
 
     fn filters() -> [Filter; 5] {
-        [
-            Filter::BOX,
-            Filter::tent(1.0).unwrap(),
-            Filter::tent(2.5).unwrap(),
-            Filter::gaussian(0.5).unwrap(),
-            Filter::gaussian(1.3).unwrap(),
-        ]
+        [Filter::BOX, Filter::TENT, Filter::tent(2.5).unwrap(), Filter::GAUSSIAN, Filter::gaussian(1.3).unwrap()]
     }
 
     /// Integral of the density from minus the radius to `x`, by the midpoint rule.
@@ -206,11 +206,12 @@ mod tests {
             assert!(matches!(Filter::gaussian(bad), Err(FilterError::StandardDeviation(_))), "{bad}");
         }
         assert!(Filter::gaussian(17.0).unwrap_err().to_string().contains("17"));
+        assert_eq!((Filter::tent(1.0), Filter::gaussian(0.5)), (Ok(Filter::TENT), Ok(Filter::GAUSSIAN)));
     }
 
     #[test]
     fn density_matches_mitsubas_gaussian() {
-        let filter = Filter::gaussian(0.5).unwrap();
+        let filter = Filter::GAUSSIAN;
         let mitsuba = |x: f32| ((-2.0 * x * x).exp() - (-8.0f32).exp()).max(0.0);
         let ratio = filter.density_1d(0.0) / mitsuba(0.0);
         for x in [0.1, 0.5, 1.0, 1.7, 1.99, 2.0, 3.0] {

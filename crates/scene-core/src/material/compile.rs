@@ -191,11 +191,6 @@ impl CompiledMaterial {
         }
     }
 
-    /// The share of light that is not passed straight on at `uv`: 1 without a mask. For opacity tests in traversal.
-    pub fn opacity(&self, uv: [f32; 2]) -> f32 {
-        self.opacity_at(|texture| texture.eval(uv))
-    }
-
     fn opacity_at(&self, look_up: impl Fn(&Texture) -> Rgb) -> f32 {
         self.opacity.iter().map(|texture| look_up(texture).luminance().clamp(0.0, 1.0)).product()
     }
@@ -207,44 +202,20 @@ impl CompiledMaterial {
         self.needs_tangents
     }
 
-    /// Whether it has a mask.
-    #[inline]
-    pub fn is_masked(&self) -> bool {
-        !self.opacity.is_empty()
-    }
-
     /// Whether it scatters on both sides: two-sided or transmissive.
     pub fn is_two_sided(&self) -> bool {
         self.two_sided || self.front.is_transmissive()
     }
 
-    /// Whether [`shading_frame`](Self::shading_frame) differs from the input's shading normal.
-    #[inline]
-    pub fn perturbs_normal(&self) -> bool {
-        !self.normals.is_empty()
-    }
-
     /// The frame in which directions are handed to the [`Bsdf`]: z is the shading normal after bump and normal mapping,
     /// x lies along `dpdu`. It does not depend on any direction, as bidirectional methods need it.
     ///
-    /// Where light crosses the original but not the perturbed surface, or the other way around, the frame alone decides, as in
-    /// Mitsuba 3.
+    /// Where light crosses the original but not the perturbed surface, or the other way around, the frame alone decides. So
+    /// does Mitsuba 3 for interpolated normals; its bump and normal maps pass nothing there.
     #[inline]
     pub fn shading_frame(&self, input: &ShadingInput) -> Frame {
         let normal = self.normals.iter().fold(input.shading_normal, |normal, map| map.perturb(normal, input));
         Frame::from_z_and_tangent(normal, input.dpdu)
-    }
-
-    /// As [`shading_frame`](Self::shading_frame), but normals that turn away from `wo` are mirrored at the one they replace, so
-    /// that bumps seen at grazing angles are not black: what Mitsuba 3.9 calls `flip_invalid_normals` and does by default.
-    ///
-    /// The frame depends on `wo`, so that paths do not see the same surface from both ends.
-    pub fn shading_frame_towards(&self, input: &ShadingInput, wo: Vec3A) -> Frame {
-        let turn = |old: Vec3A, new: Vec3A| {
-            if wo.dot(old) * wo.dot(new) < 0.0 { old * (2.0 * old.dot(new)) - new } else { new }
-        };
-        let perturb = |normal: Vec3A, map: &NormalModifier| turn(normal, map.perturb(normal, input));
-        Frame::from_z_and_tangent(self.normals.iter().fold(input.shading_normal, perturb), input.dpdu)
     }
 
     /// Whether it has a component that is not a Dirac delta.

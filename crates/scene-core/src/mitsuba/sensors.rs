@@ -6,7 +6,8 @@ use super::error::Result;
 use super::importer::Importer;
 use super::object::{Object, Tag};
 use super::transforms;
-use crate::reference::{CameraDescription, FilterDescription};
+use crate::film::{Filter, FilterError};
+use crate::reference::CameraDescription;
 
 /// Largest width and height of an image.
 const LARGEST_SIZE: u32 = 1 << 16;
@@ -14,7 +15,7 @@ const LARGEST_SIZE: u32 = 1 << 16;
 /// Everything that a sensor says.
 pub(super) struct Camera {
     pub(super) description: CameraDescription,
-    pub(super) filter: FilterDescription,
+    pub(super) filter: Filter,
     pub(super) samples_per_pixel: Option<u32>,
 }
 
@@ -63,11 +64,10 @@ impl Importer<'_> {
         Ok(Camera { description, filter, samples_per_pixel })
     }
 
-    fn film(&mut self, sensor: &Object) -> Result<(u32, u32, FilterDescription)> {
+    fn film(&mut self, sensor: &Object) -> Result<(u32, u32, Filter)> {
         let document = self.document;
-        let default_filter = FilterDescription::Gaussian { standard_deviation: 0.5 };
         let Some((_, index)) = document.children(sensor, &[Tag::Film]).next() else {
-            return Ok((768, 576, default_filter));
+            return Ok((768, 576, Filter::GAUSSIAN));
         };
         let film = &document.objects[index];
         match film.plugin.as_str() {
@@ -86,7 +86,7 @@ impl Importer<'_> {
         }
         let filter = match document.children(film, &[Tag::Filter]).next() {
             Some((_, index)) => self.filter(&document.objects[index])?,
-            None => default_filter,
+            None => Filter::GAUSSIAN,
         };
         film.ignore(&["file_format", "pixel_format", "component_format", "banner", "sample_border", "compensate"]);
         if film.plugin == "ldrfilm" {
@@ -96,19 +96,19 @@ impl Importer<'_> {
         Ok((width, height, filter))
     }
 
-    fn filter(&mut self, object: &Object) -> Result<FilterDescription> {
-        let positive = |name: &str, default: f32| match object.float(name)? {
-            Some(value) if value <= 0.0 => Err(object.place.invalid(format!("`{name}` is {value}, not positive"))),
-            value => Ok(value.unwrap_or(default)),
+    fn filter(&mut self, object: &Object) -> Result<Filter> {
+        let with = |name: &str, default: Filter, make: fn(f32) -> std::result::Result<Filter, FilterError>| {
+            let Some(value) = object.float(name)? else { return Ok(default) };
+            make(value).map_err(|error| object.place.invalid(error.to_string()))
         };
         let filter = match object.plugin.as_str() {
-            "box" => FilterDescription::Box,
-            "tent" => FilterDescription::Tent { radius: positive("radius", 1.0)? },
-            "gaussian" => FilterDescription::Gaussian { standard_deviation: positive("stddev", 0.5)? },
+            "box" => Filter::BOX,
+            "tent" => with("radius", Filter::TENT, Filter::tent)?,
+            "gaussian" => with("stddev", Filter::GAUSSIAN, Filter::gaussian)?,
             "mitchell" | "catmullrom" | "lanczos" => {
                 self.warn_at(&object.place, format!("the filter `{}` is replaced by `gaussian`", object.plugin));
                 object.ignore_all();
-                FilterDescription::Gaussian { standard_deviation: 0.5 }
+                Filter::GAUSSIAN
             }
             _ => return Err(Self::unknown(object)),
         };

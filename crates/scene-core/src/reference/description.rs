@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3A};
 
+use crate::film::Filter;
 use crate::material::Material;
 use crate::texture::Image;
 use crate::traits::Rgb;
@@ -98,24 +99,6 @@ pub enum Light {
     },
 }
 
-/// How pixels are reconstructed from samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum FilterDescription {
-    /// Mean over the pixel.
-    #[default]
-    Box,
-    /// Tent, radius in pixels.
-    Tent {
-        /// Half width, in pixels.
-        radius: f32,
-    },
-    /// Truncated Gaussian.
-    Gaussian {
-        /// Standard deviation, in pixels. It is cut off at four of them.
-        standard_deviation: f32,
-    },
-}
-
 /// A perspective camera: looks along +z in its own coordinates, with +y up and +x to the left of the image
 /// (as in Mitsuba).
 #[derive(Clone, Debug)]
@@ -150,7 +133,7 @@ pub struct SceneDescription {
     /// The camera.
     pub camera: CameraDescription,
     /// Reconstruction filter.
-    pub filter: FilterDescription,
+    pub filter: Filter,
     /// Path length up to which the file wants light to be gathered, counted as Mitsuba does: 1 is directly visible
     /// emission, 2 direct light, ..; `None` is unlimited.
     pub max_depth: Option<u32>,

@@ -10,9 +10,7 @@ mod scene;
 mod vertex;
 
 pub use camera::{CameraError, PerspectiveCamera};
-pub use description::{
-    CameraDescription, FilterDescription, Instance, Light, MaterialId, SceneDescription, Shape, ShapeId,
-};
+pub use description::{CameraDescription, Instance, Light, MaterialId, SceneDescription, Shape, ShapeId};
 pub use emitters::{
     DirectionalEmitter, DiskEmitter, EnvironmentEmitter, MeshEmitter, PointEmitter, PowerChoice, ReferenceEmitter,
     SphereEmitter, SpotEmitter, UniformChoice,

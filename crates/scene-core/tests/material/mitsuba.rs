@@ -45,7 +45,8 @@ fn any_differs(a: Rgb, b: Rgb, relative: f32) -> bool {
     (0..3).any(|c| differs(a[c], b[c], relative))
 }
 
-/// The frame of the hit that the values are for, and the local one, perturbed.
+/// The shading frame at the hit that the values are for. Unlike ours, Mitsuba's `flip_invalid_normals` mirrors a normal that
+/// turns away from `wo` at the one that it replaces, which here is z.
 fn local_frame(material: &CompiledMaterial, wo: Vec3A) -> Frame {
     let input = ShadingInput {
         uv: [0.3, 0.4],
@@ -54,7 +55,9 @@ fn local_frame(material: &CompiledMaterial, wo: Vec3A) -> Frame {
         shading_normal: Vec3A::Z,
         geometric_normal: Vec3A::Z,
     };
-    material.shading_frame_towards(&input, wo)
+    let normal = material.shading_frame(&input).z;
+    let is_invalid = wo.z * wo.dot(normal) < 0.0;
+    Frame::from_z_and_tangent(if is_invalid { normal.with_x(-normal.x).with_y(-normal.y) } else { normal }, input.dpdu)
 }
 
 #[test]
@@ -70,7 +73,7 @@ fn values_and_densities() {
         let [local_o, local_i] = [wo, wi].map(|w| frame.to_local(w));
         let (mut value, mut pdf) = material.resolve([0.3, 0.4]).eval_pdf(local_o, local_i, row.mode());
         if wi.z * local_i.z <= 0.0 {
-            // The rule of bump maps that vertices apply.
+            // Mitsuba's bump and normal maps pass nothing across the surface that they tilt. Ours let the frame decide.
             (value, pdf) = (Rgb::ZERO, 0.0);
         }
         // Beckmann's density is exact here, that of Mitsuba has the error of its masking approximation; the choice of
