@@ -218,3 +218,45 @@ impl<S: Sampler> Sampler for FewDimensionsSampler<S> {
         Self { sampler: first.clone(), first, taken: 0 }
     }
 }
+
+/// A scene that claims to have no specular surfaces.
+#[derive(Clone, Debug)]
+pub struct NothingSpecular<S>(pub S);
+
+impl<S: Scene> Scene for NothingSpecular<S> {
+    type Spectrum = S::Spectrum;
+    type Vertex<'s>
+        = S::Vertex<'s>
+    where
+        Self: 's;
+    type Emitter = S::Emitter;
+    type Sensor = S::Sensor;
+
+    fn intersect(&self, ray: &Ray) -> Option<Self::Vertex<'_>> {
+        self.0.intersect(ray)
+    }
+
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.0.occluded(ray)
+    }
+
+    fn emitters(&self) -> &[Self::Emitter] {
+        self.0.emitters()
+    }
+
+    fn environment(&self) -> Option<EmitterId> {
+        self.0.environment()
+    }
+
+    fn sensor(&self) -> &Self::Sensor {
+        self.0.sensor()
+    }
+
+    fn bounding_sphere(&self) -> (Vec3A, f32) {
+        self.0.bounding_sphere()
+    }
+
+    fn has_specular_surfaces(&self) -> bool {
+        false
+    }
+}

@@ -33,6 +33,21 @@ pub fn resized(mut description: SceneDescription, width: u32, height: u32) -> Sc
     description
 }
 
+/// The same scene in another unit of length: everything is `scale` times as large, seen from as many times the distance.
+/// Of lights that are no surfaces, environments alone may be in it.
+#[must_use]
+pub fn scaled(mut description: SceneDescription, scale: f32) -> SceneDescription {
+    let larger = Affine3A::from_scale(scene_core::glam::Vec3::splat(scale));
+    for instance in &mut description.instances {
+        instance.to_world = larger * instance.to_world;
+    }
+    let camera = &mut description.camera;
+    camera.to_world.translation *= scale;
+    camera.aperture_radius *= scale;
+    camera.focus_distance *= scale;
+    description
+}
+
 fn v(x: f32, y: f32, z: f32) -> Vec3A {
     Vec3A::new(x, y, z)
 }

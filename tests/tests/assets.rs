@@ -2,21 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
 
 use lichtwerk::program::{RenderSettings, estimate, load_description};
 use lichtwerk::render::Budget;
+use lichtwerk_tests::assets::asset;
 use scene_core::ReferenceScene;
 use scene_core::film::LayeredImage;
-
-fn asset(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets").join(name);
-    if !path.exists() {
-        println!("skipped: there is no {}", path.display());
-        return None;
-    }
-    Some(path)
-}
 
 /// Renders a scene file; nothing where it is absent.
 fn render(name: &str, size: [u32; 2], samples: u64, max_depth: u32) -> Option<LayeredImage> {

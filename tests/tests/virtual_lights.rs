@@ -1,0 +1,220 @@
+//! Robust instant global illumination equals path tracing, for every partition and way of sharing light paths.
+//!
+//! The long forms: `cargo test --release --workspace -- --ignored`.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::ops::ControlFlow;
+
+use estimator_checks::{BatchMeans, Suite};
+use lichtwerk::light_paths::{LightPathSettings, PartitionName};
+use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
+use lichtwerk::render::{Budget, Rendering};
+use lichtwerk_tests::planted::NothingSpecular;
+use lichtwerk_tests::{Effort, assets, block_means, scenes};
+use qmc_sampling::Interleaved;
+use scene_core::builtin::Builtin;
+use scene_core::{Scene, SceneDescription};
+use vpl_gi::{ShadowRays, Threshold};
+
+/// Quick and long forms count: both may run.
+static SUITE: Suite = Suite::with_share("workspace virtual lights", 200, 3e-8);
+
+/// In units of one over the squared radius of the scene.
+const THRESHOLDS: [f32; 6] = [0.0, 0.05, 0.3, 1.0, 10.0, 1000.0];
+
+fn path() -> RenderSettings {
+    RenderSettings { max_depth: 5, ..RenderSettings::new(Budget::Samples(0)) }
+}
+
+fn robust(threshold: f32, partition: PartitionName, interleaved: bool) -> RenderSettings {
+    let interleave = if interleaved { Some(Interleaved::new(3, 3).unwrap()) } else { None };
+    let light_paths = LightPathSettings {
+        threshold: Some(Threshold::Normalised(threshold)),
+        partition,
+        light_paths: if interleaved { 8 } else { 1 },
+        interleave,
+        ..LightPathSettings::default()
+    };
+    RenderSettings { estimator: EstimatorName::RobustIgi, light_paths, ..path() }
+}
+
+/// A scene with its image by path tracing.
+struct Truth<S> {
+    test: String,
+    scene: S,
+    path: BatchMeans,
+    effort: Effort,
+}
+
+impl<S: Scene + Sync> Truth<S> {
+    fn new(test: &str, scene: S, effort: Effort) -> Self {
+        let path = block_means(&format!("{test}: path"), &scene, &path(), effort);
+        Self { test: test.to_owned(), scene, path, effort }
+    }
+
+    fn means(&self, what: &str, settings: &RenderSettings) -> BatchMeans {
+        block_means(&format!("{}: {what}", self.test), &self.scene, settings, self.effort)
+    }
+
+    fn equals(&self, what: &str, settings: &RenderSettings) {
+        let check = SUITE.check(&format!("{}: {what}", self.test));
+        println!("{}", self.path.agrees_with(check, &self.means(what, settings)).expect_pass());
+    }
+
+    fn rejects(&self, what: &str, settings: &RenderSettings) {
+        let twin = SUITE.twin(&format!("{}: {what}", self.test));
+        println!("{}", self.path.agrees_with(twin, &self.means(what, settings)).expect_reject());
+    }
+
+    /// Every threshold, hard and soft, with light paths of one's own and shared (if not `both`, in turn).
+    fn equals_everywhere(&self, thresholds: &[f32], both: bool) {
+        for (k, &threshold) in thresholds.iter().enumerate() {
+            for partition in [PartitionName::Hard, PartitionName::Soft] {
+                for interleaved in [true, false].into_iter().filter(|&shared| both || shared == (k % 2 == 0)) {
+                    let what = format!("{partition:?} {threshold}, interleaved {interleaved}");
+                    self.equals(&what, &robust(threshold, partition, interleaved));
+                }
+            }
+        }
+    }
+}
+
+/// One test, in a quick and a long form.
+macro_rules! both_forms {
+    ($($name:ident => $test:expr;)*) => {
+        mod quick {
+            use super::*;
+            $(#[test]
+            fn $name() {
+                $test(concat!(stringify!($name)), Effort::QUICK, true);
+            })*
+        }
+        mod long {
+            use super::*;
+            $(#[test]
+            #[ignore = "long form: cargo test --release --workspace -- --ignored"]
+            fn $name() {
+                $test(concat!(stringify!($name), " (long)"), Effort::LONG, false);
+            })*
+        }
+    };
+}
+
+/// The quick forms take fewer thresholds where the scene is not the Cornell box.
+fn equal_on(test: &str, description: SceneDescription, effort: Effort, quick: bool) {
+    let thresholds: &[f32] = if quick { &[10.0] } else { &THRESHOLDS };
+    Truth::new(test, scenes::build(description), effort).equals_everywhere(thresholds, quick);
+}
+
+both_forms! {
+    robust_equals_path_in_the_cornell_box => |test, effort, quick| {
+        Truth::new(test, scenes::build(scenes::cornell_box()), effort).equals_everywhere(&THRESHOLDS, quick);
+    };
+    robust_equals_path_on_rough_materials => |test, effort, quick| equal_on(test, scenes::rough_materials(), effort, quick);
+    robust_equals_path_through_glass => |test, effort, quick| equal_on(test, scenes::glass_ball(), effort, quick);
+    robust_equals_path_with_bent_normals => |test, effort, quick| equal_on(test, scenes::bent_normals(), effort, quick);
+    robust_equals_path_in_an_environment => |test, effort, quick| equal_on(test, scenes::environment_map(), effort, quick);
+    robust_equals_path_with_lens_and_masks => |test, effort, quick| equal_on(test, scenes::lens_and_masks(), effort, quick);
+    robust_equals_path_in_the_studio => |test, effort, quick| equal_on(test, scenes::studio(), effort, quick);
+    robust_equals_path_from_delta_lights => |test, effort, quick| equal_on(test, scenes::delta_lights(), effort, quick);
+    robust_equals_path_in_the_office => |test, effort, quick| {
+        let Some(office) = Builtin::named("office") else { panic!("no office") };
+        equal_on(test, scenes::resized(office.description(), scenes::SIZE, scenes::SIZE), effort, quick);
+    };
+    robust_equals_path_in_the_modern_hall => |test, effort, quick: bool| {
+        let Some(description) = assets::modern_hall() else { return };
+        equal_on(test, scenes::resized(description, scenes::SIZE, scenes::SIZE), effort, quick);
+    };
+}
+
+/// The other two partitions, final gathering, and fewer shadow rays change no expectation.
+#[test]
+fn variants_equal_path() {
+    let truth = Truth::new("variants", scenes::build(scenes::studio()), Effort::QUICK);
+    for partition in [PartitionName::Balance, PartitionName::Distance] {
+        truth.equals(&format!("{partition:?}"), &robust(10.0, partition, true));
+    }
+    let with = |change: fn(&mut LightPathSettings)| {
+        let mut settings = robust(10.0, PartitionName::Hard, true);
+        change(&mut settings.light_paths);
+        settings
+    };
+    truth.equals("sampled", &with(|l| l.shadow_rays = ShadowRays::Sampled { count: 3 }));
+    truth.equals("one shadow ray", &with(|l| l.shadow_rays = ShadowRays::Sampled { count: 1 }));
+    truth.equals("ordered", &with(|l| l.shadow_rays = ShadowRays::Ordered { tolerance: 0.2, remainder: 1 }));
+    truth.equals("ordered, all", &with(|l| l.shadow_rays = ShadowRays::Ordered { tolerance: 0.0, remainder: 1 }));
+    truth.equals("final gathering", &with(|l| l.gather = 3));
+}
+
+/// What is lost in corners, and behind glass, is found missing.
+#[test]
+fn planted_bugs_are_rejected() {
+    let truth = Truth::new("planted", scenes::build(scenes::cornell_box()), Effort::QUICK);
+    let dropped = |threshold, partition| RenderSettings {
+        estimator: EstimatorName::InstantRadiosity,
+        ..robust(threshold, partition, true)
+    };
+    truth.rejects("clamped", &dropped(3.0, PartitionName::Soft));
+    truth.rejects("attenuated", &dropped(3.0, PartitionName::Balance));
+    truth.rejects("distance alone", &dropped(3.0, PartitionName::Distance));
+    truth.rejects("geometry term alone", &dropped(3.0, PartitionName::Hard));
+    truth.rejects("one segment less", &RenderSettings { max_depth: 4, ..robust(10.0, PartitionName::Hard, true) });
+    // Without a threshold nothing is lost: instant radiosity is right where nothing is specular.
+    truth.equals("instant radiosity", &dropped(f32::INFINITY, PartitionName::Hard));
+
+    // Rays that end at the partition's reach miss the glass behind.
+    let truth = Truth::new("planted in glass", scenes::build(scenes::glass_ball()), Effort::QUICK);
+    let settings = robust(10.0, PartitionName::Hard, true);
+    let wrong =
+        block_means("rays too short", &NothingSpecular(scenes::build(scenes::glass_ball())), &settings, truth.effort);
+    println!("{}", truth.path.agrees_with(SUITE.twin("rays too short"), &wrong).expect_reject());
+}
+
+fn render<S: Scene + Sync>(scene: &S, settings: &RenderSettings, threads: usize) -> Rendering {
+    let settings = RenderSettings { threads, budget: Budget::Samples(4), ..settings.clone() };
+    estimate(scene, &settings, |_| ControlFlow::Continue(())).unwrap()
+}
+
+#[test]
+fn images_do_not_depend_on_threads() {
+    let scene = scenes::build(scenes::studio());
+    for interleaved in [true, false] {
+        let settings = robust(10.0, PartitionName::Hard, interleaved);
+        let (one, three) = (render(&scene, &settings, 1), render(&scene, &settings, 3));
+        assert_eq!(one.film, three.film);
+        assert_eq!(one.rays, three.rays);
+    }
+}
+
+/// Metres or millimetres: with the normalised threshold the same image and the same rays; the absolute one costs something else.
+#[test]
+fn cost_does_not_depend_on_the_unit() {
+    let metres = scenes::build(scenes::cornell_box());
+    // A power of two: round-off scales along.
+    let scaled = scenes::build(scenes::scaled(scenes::cornell_box(), 1024.0));
+    for interleaved in [true, false] {
+        let settings = robust(10.0, PartitionName::Hard, interleaved);
+        let (a, b) = (render(&metres, &settings, 1), render(&scaled, &settings, 1));
+        assert_eq!(a.rays, b.rays);
+        let (a, b) = (a.film.develop(0), b.film.develop(0));
+        for (a, b) in a.rgb().unwrap().iter().flatten().zip(b.rgb().unwrap().iter().flatten()) {
+            assert!((a - b).abs() <= 1e-4 * a.abs().max(1e-3), "{a} {b}");
+        }
+        let mut absolute = settings;
+        absolute.light_paths.threshold = Some(Threshold::Absolute(10.0));
+        assert_ne!(render(&metres, &absolute, 1).rays, render(&scaled, &absolute, 1).rays);
+    }
+}
+
+/// Rays of the limits: path tracing asks for no visibility, instant radiosity scatters nothing.
+#[test]
+fn limits_trace_what_they_must() {
+    let scene = scenes::build(scenes::cornell_box());
+    let pixels = u64::from(scenes::SIZE) * u64::from(scenes::SIZE) * 4;
+    let path = render(&scene, &robust(0.0, PartitionName::Hard, true), 1);
+    assert_eq!(path.rays.visibility, 0);
+    let radiosity = render(&scene, &robust(f32::INFINITY, PartitionName::Hard, true), 1);
+    let light_rays = 4 * 9 * 8 * 3;
+    assert!(radiosity.rays.visibility > 0);
+    assert!(radiosity.rays.closest_hit <= pixels + light_rays, "{:?}", radiosity.rays);
+}
