@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 mod ambient;
+mod bidirectional;
 mod caustics;
 mod lights;
 mod observer;
@@ -12,6 +13,9 @@ mod shading;
 mod shadow_rays;
 
 pub use ambient::openness;
+pub use bidirectional::{
+    Bidirectional, Classical, LightPaths, PathHeuristic, PathTechniques, Stratified, TechniqueSet,
+};
 pub use caustics::{CausticMap, NoCaustics};
 pub use lights::{LightKind, LightTracing, VirtualPointLight, VirtualPointLights, geometry_term, photon_cloud};
 pub use mis_heuristics::PartitionError;

@@ -10,6 +10,7 @@ use scene_core::{Scene, Spectrum, Vertex};
 pub use lanes::geometry_term;
 pub(crate) use lanes::{LANES, Lanes};
 pub use trace::{LightTracing, photon_cloud};
+pub(crate) use trace::{Start, light_of_start, light_of_vertex};
 pub(crate) use vertex::Towards;
 pub use vertex::{LightKind, VirtualPointLight};
 
