@@ -1,7 +1,8 @@
 //! Choices that are made on the command line, behind the traits that the estimators take.
 
-use mis_heuristics::{Balance, Densities, Heuristic, Maximum, Power};
+use mis_heuristics::{Balance, Cutoff, Densities, Float, Heuristic, Maximum, Power};
 use scene_core::{ChosenEmitter, Emitter, EmitterChoice, EmitterId, PowerChoice, SurfacePoint, UniformChoice};
+use vpl_gi::{Classical, Partition, PathHeuristic, PathTechniques, Stratified};
 
 /// A heuristic of `mis-heuristics` by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -13,15 +14,52 @@ pub enum AnyHeuristic {
     Power,
     /// All weight to the largest density.
     Maximum,
+    /// Balance among those with at least a tenth of the largest density.
+    Cutoff,
+    /// By the geometry terms of whole paths: for `bdpt` alone.
+    Stratification,
 }
 
-impl Heuristic<f32> for AnyHeuristic {
+impl AnyHeuristic {
+    /// Whether it is one of densities. The stratification heuristic is not: it needs whole paths.
+    pub fn is_of_densities(self) -> bool {
+        self != Self::Stratification
+    }
+}
+
+/// What [`AnyHeuristic::Cutoff`] leaves out: densities below this part of the largest.
+const CUTOFF: f64 = 0.1;
+
+impl<F: Float> Heuristic<F> for AnyHeuristic {
+    /// # Panics
+    /// With the stratification heuristic, which knows no densities: see [`is_of_densities`](Self::is_of_densities).
     #[inline]
-    fn weight(&self, technique: usize, densities: &impl Densities<f32>) -> f32 {
+    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
         match self {
             Self::Balance => Balance.weight(technique, densities),
             Self::Power => Power::TWO.weight(technique, densities),
             Self::Maximum => Maximum.weight(technique, densities),
+            Self::Cutoff => Cutoff::new(CUTOFF).expect("a cutoff between 0 and 1").weight(technique, densities),
+            Self::Stratification => panic!("the stratification heuristic is not one of densities"),
+        }
+    }
+}
+
+/// A heuristic for whole paths, by name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnyPathHeuristic {
+    /// Its name.
+    pub name: AnyHeuristic,
+    /// What stratification goes by.
+    pub partition: Partition,
+}
+
+impl PathHeuristic for AnyPathHeuristic {
+    #[inline]
+    fn weight(&self, technique: usize, path: &impl PathTechniques) -> f64 {
+        match self.name {
+            AnyHeuristic::Stratification => Stratified(self.partition).weight(technique, path),
+            name => Classical(name).weight(technique, path),
         }
     }
 }

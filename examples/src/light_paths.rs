@@ -3,7 +3,11 @@
 use clap::{Args, ValueEnum};
 use qmc_sampling::Interleaved;
 use scene_core::Scene;
-use vpl_gi::{FinalGathering, Partition, PartitionError, Residual, RobustIgi, ShadowRays, Threshold};
+use scene_core::film::{LayeredImage, LayeredImageError};
+use vpl_gi::{
+    DiscontinuityBuffer, FinalGathering, Partition, PartitionError, PixelFeatures, Residual, RobustIgi, ShadowRays,
+    TechniqueSet, Threshold,
+};
 
 use crate::render::Sharing;
 
@@ -59,6 +63,12 @@ pub struct LightPathSettings {
     /// Final gathering with this number of rays; 0 is none.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
     pub gather: u32,
+    /// Do not connect light paths to the lens (bdpt): the techniques of Kollig and Keller 2004.
+    #[arg(long)]
+    pub without_lens: bool,
+    /// Smooth the image over the tile where neighbours see about the same surface: the discontinuity buffer. Biased.
+    #[arg(long)]
+    pub discontinuity_buffer: bool,
 }
 
 const DEFAULT_LIGHT_PATHS: u32 = 32;
@@ -77,21 +87,67 @@ impl Default for LightPathSettings {
             interleave: Interleaved::new(3, 3).ok(),
             shadow_rays: ShadowRays::All,
             gather: 0,
+            without_lens: false,
+            discontinuity_buffer: false,
         }
     }
 }
 
 impl LightPathSettings {
+    /// Applies the discontinuity buffer, if it is asked for and there is a tile: to the image and with the auxiliary channels of first
+    /// hits. Variances are not known any more.
+    ///
+    /// # Errors
+    /// If the image has no colours.
+    pub fn smooth(&self, image: &mut LayeredImage) -> Result<(), LayeredImageError> {
+        let (true, Some(tile)) = (self.discontinuity_buffer, self.interleave) else { return Ok(()) };
+        let channel = |name: &str| image.channel(name).unwrap_or_default();
+        let (albedo, normal) = (["Albedo.R", "Albedo.G", "Albedo.B"].map(channel), ["N.X", "N.Y", "N.Z"].map(channel));
+        let depth = channel("Z");
+        let at = |values: &[f32], pixel: usize| values.get(pixel).copied().unwrap_or(0.0);
+        let features: Vec<PixelFeatures> = (0..image.pixel_count())
+            .map(|pixel| PixelFeatures {
+                albedo: albedo.map(|values| at(values, pixel)),
+                normal: normal.map(|values| at(values, pixel)),
+                depth: at(depth, pixel),
+            })
+            .collect();
+        let size = [image.width(), image.height()];
+        let smooth = DiscontinuityBuffer::new(tile.sides()).filter(size, &features, &image.rgb()?);
+        let Some(smooth) = smooth else { return Ok(()) };
+        image.set_rgb(&smooth)?;
+        for name in ["Variance.R", "Variance.G", "Variance.B"] {
+            image.set_channel(name, vec![f32::INFINITY; smooth.len()])?;
+        }
+        Ok(())
+    }
+
     /// Who shares light paths.
     pub fn sharing(&self) -> Sharing {
         self.interleave.map_or(Sharing::Independent, Sharing::Interleaved)
     }
 
-    /// The partition for a scene.
+    /// The techniques of bidirectional path tracing, for an image of this size.
+    pub fn techniques(&self, [width, height]: [u32; 2]) -> TechniqueSet {
+        if self.without_lens {
+            return TechniqueSet::WithoutLens;
+        }
+        let different = match self.sharing() {
+            Sharing::Independent => f64::from(width) * f64::from(height),
+            Sharing::Interleaved(tile) => f64::from(tile.patterns()),
+        };
+        TechniqueSet::WithLens { light_paths: different * f64::from(self.light_paths) }
+    }
+
+    /// The partition of bidirectional path tracing and robust instant global illumination.
     ///
     /// # Errors
     /// If the threshold is negative or NaN.
-    pub fn partition<S: Scene>(&self, scene: &S, default: f32) -> Result<Partition, PartitionError> {
+    pub fn partition_of<S: Scene>(&self, scene: &S) -> Result<Partition, PartitionError> {
+        self.partition_or(scene, DEFAULT_THRESHOLD)
+    }
+
+    fn partition_or<S: Scene>(&self, scene: &S, default: f32) -> Result<Partition, PartitionError> {
         let threshold = self.threshold.unwrap_or(Threshold::normalised(default));
         self.partition.partition(threshold.resolve(scene.bounding_sphere().1))
     }
@@ -104,7 +160,7 @@ impl LightPathSettings {
         let default = if residual == Residual::Drop { f32::INFINITY } else { DEFAULT_THRESHOLD };
         let gathering = (self.gather > 0).then_some(FinalGathering { rays: self.gather });
         let shadow_rays = self.shadow_rays;
-        Ok(RobustIgi { residual, shadow_rays, gathering, ..RobustIgi::new(self.partition(scene, default)?) })
+        Ok(RobustIgi { residual, shadow_rays, gathering, ..RobustIgi::new(self.partition_or(scene, default)?) })
     }
 }
 

@@ -5,6 +5,7 @@
 mod ambient;
 mod bidirectional;
 mod caustics;
+mod discontinuity;
 mod lights;
 mod observer;
 mod partition;
@@ -17,6 +18,7 @@ pub use bidirectional::{
     Bidirectional, Classical, LightPaths, PathHeuristic, PathTechniques, Stratified, TechniqueSet,
 };
 pub use caustics::{CausticMap, NoCaustics};
+pub use discontinuity::{DiscontinuityBuffer, PixelFeatures};
 pub use lights::{LightKind, LightTracing, VirtualPointLight, VirtualPointLights, geometry_term, photon_cloud};
 pub use mis_heuristics::PartitionError;
 pub use observer::Observer;

@@ -1,6 +1,7 @@
 //! Estimators of the image: each adds up one kind of paths, against the scene traits alone.
 
 mod ambient_occlusion;
+mod bidirectional;
 mod light;
 mod path;
 mod virtual_lights;
@@ -10,6 +11,7 @@ use scene_core::{Ray, Scene, Spectrum, Vertex};
 use qmc_sampling::Sampler;
 
 pub use ambient_occlusion::AmbientOcclusion;
+pub use bidirectional::BidirectionalPaths;
 pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
 pub use virtual_lights::VirtualLights;

@@ -13,6 +13,8 @@ mod context;
 mod report;
 mod samplers;
 mod setup;
+mod strata;
+mod stratification_efficiency;
 mod trials;
 
 use crate::program::Failure;
@@ -33,11 +35,23 @@ pub struct Experiment {
 }
 
 /// All experiments.
-pub const EXPERIMENTS: &[Experiment] = &[Experiment {
-    name: "samplers",
-    about: "what each sampler gains over independent numbers, on the Cornell box at 64 samples per pixel",
-    measure: samplers::measure,
-}];
+pub const EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: "samplers",
+        about: "what each sampler gains over independent numbers, on the Cornell box at 64 samples per pixel",
+        measure: samplers::measure,
+    },
+    Experiment {
+        name: "strata",
+        about: "figures 2 to 5 of Kollig and Keller 2004: weights, lengths of eye paths, contributions of strata",
+        measure: strata::measure,
+    },
+    Experiment {
+        name: "stratification-efficiency",
+        about: "figure 6 of Kollig and Keller 2004: cost at equal error by heuristic and threshold",
+        measure: stratification_efficiency::measure,
+    },
+];
 
 impl Experiment {
     /// The experiment of this name.

@@ -1,13 +1,14 @@
 //! What an experiment renders.
 
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 
 use scene_core::builtin::Builtin;
 use scene_core::film::LayeredImage;
-use scene_core::{ReferenceScene, Scene};
+use scene_core::{ReferenceScene, Scene, SceneDescription};
 
 use super::Context;
-use crate::program::{Failure, RenderSettings, estimate};
+use crate::program::{Failure, RenderSettings, estimate, load_description};
 use crate::render::{Budget, Rendering};
 
 /// A scene, and the settings that all renderings of it share.
@@ -24,9 +25,27 @@ impl Setup {
     ///
     /// # Errors
     /// No such scene, or one that cannot be built at this size.
-    pub fn builtin(context: &Context, name: &str, [width, height]: [u32; 2]) -> Result<Self, Failure> {
+    pub fn builtin(context: &Context, name: &str, size: [u32; 2]) -> Result<Self, Failure> {
         let builtin = Builtin::named(name).ok_or_else(|| format!("there is no builtin scene '{name}'"))?;
-        let mut description = builtin.description();
+        Self::of(context, builtin.description(), size)
+    }
+
+    /// A scene file below the folder that the environment variable `LICHTWERK_ASSETS` names, or else `../shared/assets`. Nothing if there
+    /// is no such file.
+    ///
+    /// # Errors
+    /// A file that cannot be loaded.
+    pub fn asset(context: &Context, file: &str, size: [u32; 2]) -> Result<Option<Self>, Failure> {
+        let folder =
+            std::env::var_os("LICHTWERK_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
+        let path = folder.join(file);
+        if !path.exists() {
+            return Ok(None);
+        }
+        Self::of(context, load_description(&path.to_string_lossy(), &[])?, size).map(Some)
+    }
+
+    fn of(context: &Context, mut description: SceneDescription, [width, height]: [u32; 2]) -> Result<Self, Failure> {
         (description.camera.width, description.camera.height) = (width, height);
         let filter = description.filter;
         let max_depth = description.max_depth.unwrap_or(u32::MAX);

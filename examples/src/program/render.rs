@@ -8,11 +8,13 @@ use clap::ValueEnum;
 use qmc_sampling::{Independent, OwenSobol, SamplerFamily};
 use scene_core::film::{Filter, LayeredImage};
 use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
-use vpl_gi::{LightTracing, Residual, RobustIgi};
+use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
 use super::{Failure, RenderArguments, load_description, report};
-use crate::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use crate::estimators::{AmbientOcclusion, FirstEvent, LightTracer, NoLightPaths, PathTracer, VirtualLights};
+use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
+use crate::estimators::{
+    AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NoLightPaths, PathTracer, VirtualLights,
+};
 use crate::light_paths::LightPathSettings;
 use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
@@ -36,6 +38,15 @@ pub enum EstimatorName {
     RobustIgi,
     /// Virtual point lights alone. Biased where the threshold is not infinite, or there are mirrors and glass.
     InstantRadiosity,
+    /// Bidirectional path tracing, weighted by the heuristic.
+    Bdpt,
+}
+
+impl EstimatorName {
+    /// Whether it makes use of the settings of light paths.
+    pub fn connects_light_paths(self) -> bool {
+        matches!(self, Self::RobustIgi | Self::InstantRadiosity | Self::Bdpt)
+    }
 }
 
 /// The reconstruction filters.
@@ -141,6 +152,9 @@ fn estimate_with<S: Scene + Sync>(
     samplers: &impl SamplerFamily,
     observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Rendering, RenderError> {
+    if settings.estimator != EstimatorName::Bdpt && !settings.heuristic.is_of_densities() {
+        return Err(RenderError::Heuristic);
+    }
     let choice = AnyChoice::new(settings.lights, scene.emitters());
     let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
     let (filter, budget, threads) = (settings.filter, settings.budget, settings.threads);
@@ -179,6 +193,19 @@ fn estimate_with<S: Scene + Sync>(
             Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
                 .render(observe)
         }
+        EstimatorName::Bdpt => {
+            let settings_of_paths = &settings.light_paths;
+            let heuristic =
+                AnyPathHeuristic { name: settings.heuristic, partition: settings_of_paths.partition_of(scene)? };
+            let techniques = settings_of_paths.techniques(scene.sensor().resolution());
+            let roulette_of_light = RussianRoulette::LocalAlbedo { from_length: 0 };
+            let tracing = LightTracing { choice, max_length: u32::MAX, roulette: roulette_of_light };
+            let paths = Bidirectional { heuristic, techniques, tracing, max_depth: settings.max_depth, roulette };
+            let estimator = BidirectionalPaths { paths, count: settings_of_paths.light_paths };
+            let camera = Shared { estimator, sharing: settings_of_paths.sharing() };
+            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
+        }
         EstimatorName::Ao => {
             let ao = AmbientOcclusion { distance: settings.ao_distance };
             Job { scene, samplers, camera: &ao, light: None::<&NoLightPaths>, filter, budget, threads }.render(observe)
@@ -197,6 +224,9 @@ pub fn render_to_image(
 ) -> Result<(LayeredImage, Rendering), RenderError> {
     let rendering = estimate(scene, settings, observe)?;
     let mut image = rendering.film.develop(rendering.light_paths);
+    if settings.estimator.connects_light_paths() {
+        settings.light_paths.smooth(&mut image)?;
+    }
     annotate(&mut image, scene, settings, &rendering);
     Ok((image, rendering))
 }

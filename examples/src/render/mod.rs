@@ -89,6 +89,12 @@ pub enum RenderError {
     /// The image's size.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// The image that was made.
+    #[error(transparent)]
+    Image(#[from] scene_core::film::LayeredImageError),
+    /// The stratification heuristic asked to weigh two densities.
+    #[error("the stratification heuristic weighs whole paths: use it with bdpt, or the estimator robust-igi")]
+    Heuristic,
     /// The threshold of the geometry term.
     #[error(transparent)]
     Partition(#[from] vpl_gi::PartitionError),

@@ -18,13 +18,16 @@ where
     /// The mean over all light paths (not over calls), times the reconstruction filter, is what is to be added to the image of
     /// [`radiance`](Self::radiance). Does nothing without the connection to the lens. Takes two numbers per light vertex. Each light path must
     /// be connected to the lens once, also if many eye paths share it.
-    pub fn splats<'s, S: Scene>(
+    pub fn splats<S, V>(
         &self,
-        scene: &'s S,
-        lights: &LightPaths<S::Vertex<'s>>,
+        scene: &S,
+        lights: &LightPaths<V>,
         sampler: &mut impl Sampler,
         mut splat: impl FnMut([f32; 2], S::Spectrum),
-    ) {
+    ) where
+        S: Scene,
+        V: Vertex<Spectrum = S::Spectrum>,
+    {
         if self.techniques == TechniqueSet::WithoutLens {
             return;
         }
@@ -49,7 +52,7 @@ where
             // Weigh.
             let origin = connection.lens.position;
             let density = pixels * f64::from(scene.sensor().pdf_ray(origin, -connection.wi).1);
-            let path: Path<'_, S, S::Vertex<'s>, S::Vertex<'s>> = Path {
+            let path: Path<'_, S, V, V> = Path {
                 scene,
                 lights,
                 eye: &[],

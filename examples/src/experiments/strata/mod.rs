@@ -1,0 +1,49 @@
+//! The strata of robust instant global illumination: figures 2 to 5 of Kollig and Keller 2004.
+
+mod eye_paths;
+mod single_light;
+mod weight_maps;
+
+use std::ops::ControlFlow;
+
+use qmc_sampling::{OwenSobol, Replications};
+use scene_core::film::LayeredImage;
+
+use super::{Context, Report, Setup};
+use crate::estimators::NoLightPaths;
+use crate::program::Failure;
+use crate::render::{Budget, CameraPass, Job, Rendering};
+
+/// Weights per partition, weight maps per heuristic, lengths of eye paths, and what each stratum contributes.
+pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
+    let mut report = context.report();
+    single_light::measure(context, &mut report)?;
+    weight_maps::measure(context, &mut report)?;
+    eye_paths::measure(context, &mut report)?;
+    Ok(report)
+}
+
+/// Renders with an estimator that the program does not offer.
+fn render(setup: &Setup, camera: &impl CameraPass, samples: u64, seed: u64) -> Result<Rendering, Failure> {
+    let job = Job {
+        scene: &setup.scene,
+        samplers: &OwenSobol::new(seed),
+        camera,
+        light: None::<&NoLightPaths>,
+        filter: setup.settings.filter,
+        budget: Budget::Samples(samples),
+        threads: setup.settings.threads,
+    };
+    Ok(job.render(|_| ControlFlow::Continue(()))?)
+}
+
+/// The mean of the image over pixels and channels.
+fn mean(image: &LayeredImage) -> Result<f64, Failure> {
+    let pixels = image.rgb()?;
+    Ok(pixels.iter().flatten().map(|&value| f64::from(value)).sum::<f64>() / (3 * pixels.len()).max(1) as f64)
+}
+
+/// The mean of several, with its 95 % interval.
+fn interval(values: &Replications) -> (f64, [f64; 2]) {
+    (values.mean(), values.confidence_interval(0.95))
+}
