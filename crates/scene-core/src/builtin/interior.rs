@@ -3,9 +3,8 @@
 use glam::Vec3A;
 
 use super::SceneBuilder;
-use crate::material::{Distribution, Material, conductors};
+use super::finish::{glass, lacquer, metal, tiles};
 use crate::reference::SceneDescription;
-use crate::texture::Texture;
 use crate::traits::Rgb;
 
 /// A living room in the evening, in metres: a ceiling panel, an uplight behind the sofa and a lamp on the sideboard;
@@ -24,40 +23,13 @@ fn v(x: f32, y: f32, z: f32) -> Vec3A {
     Vec3A::new(x, y, z)
 }
 
-fn two_sided(front: Material) -> Material {
-    Material::TwoSided { front: Box::new(front), back: None }
-}
-
-fn lacquer(r: f32, g: f32, b: f32, alpha: f32) -> Material {
-    two_sided(Material::RoughPlastic {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        diffuse_reflectance: Rgb::new(r, g, b).into(),
-        specular_reflectance: 1.0.into(),
-        nonlinear: true,
-        distribution: Distribution::Ggx,
-        alpha,
-    })
-}
-
 /// Walls, floor and ceiling: x from -3 to 3, y from 0 to 2.6, z from -2.4 to 2.2.
 fn room(b: &mut SceneBuilder) {
     let wall = b.diffuse(0.74, 0.70, 0.62);
     let accent = b.diffuse(0.16, 0.30, 0.36);
     let ceiling = b.diffuse(0.82, 0.82, 0.80);
-    let boards = b.material(two_sided(Material::RoughPlastic {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        diffuse_reflectance: Texture::Checkerboard {
-            color0: Rgb::new(0.36, 0.20, 0.10),
-            color1: Rgb::new(0.27, 0.14, 0.065),
-            uv_transform: [9.0, 0.0, 0.0, 0.0, 2.0, 0.0],
-        },
-        specular_reflectance: 1.0.into(),
-        nonlinear: true,
-        distribution: Distribution::Ggx,
-        alpha: 0.15,
-    }));
+    let planks = tiles(Rgb::new(0.36, 0.20, 0.10), Rgb::new(0.27, 0.14, 0.065), 9.0, 2.0);
+    let boards = b.material(lacquer(planks, 0.15));
     b.quad(boards, v(-3.0, 0.0, -2.4), v(0.0, 0.0, 4.6), v(6.0, 0.0, 0.0));
     b.quad(ceiling, v(-3.0, 2.6, -2.4), v(6.0, 0.0, 0.0), v(0.0, 0.0, 4.6));
     b.quad(accent, v(-3.0, 0.0, 2.2), v(0.0, 2.6, 0.0), v(6.0, 0.0, 0.0));
@@ -72,7 +44,7 @@ fn room(b: &mut SceneBuilder) {
 
 fn lights(b: &mut SceneBuilder) {
     let dark = b.diffuse(0.02, 0.02, 0.02);
-    let metal = b.material(two_sided(metal("Al", 0.2)));
+    let metal = b.material(metal("Al", 0.2));
     // A panel that hangs from the ceiling and shines down.
     b.cuboid(metal, v(-0.5, 2.53, -0.2), v(0.92, 0.02, 0.42), 0.0);
     b.quad(dark, v(-1.4, 2.505, -0.6), v(1.8, 0.0, 0.0), v(0.0, 0.0, 0.8));
@@ -87,24 +59,13 @@ fn lights(b: &mut SceneBuilder) {
     b.sphere(dark, v(-2.68, 0.95, -0.6), 0.11).emit(Rgb::new(14.0, 8.2, 3.6));
 }
 
-fn metal(name: &str, alpha: f32) -> Material {
-    let (eta, k) = conductors::named(name).unwrap_or((Rgb::ZERO, Rgb::ONE));
-    Material::RoughConductor {
-        eta,
-        k,
-        specular_reflectance: 1.0.into(),
-        distribution: Distribution::Ggx,
-        alpha: [alpha; 2],
-    }
-}
-
 fn furniture(b: &mut SceneBuilder) {
     let fabric = b.diffuse(0.44, 0.36, 0.28);
     let cushion = b.diffuse(0.62, 0.22, 0.10);
     let cushion_pale = b.diffuse(0.70, 0.62, 0.45);
     let rug = b.diffuse(0.50, 0.44, 0.40);
-    let dark_wood = b.material(lacquer(0.10, 0.05, 0.03, 0.1));
-    let white = b.material(lacquer(0.75, 0.75, 0.72, 0.08));
+    let dark_wood = b.material(lacquer(Rgb::new(0.10, 0.05, 0.03), 0.1));
+    let white = b.material(lacquer(Rgb::new(0.75, 0.75, 0.72), 0.08));
     b.cuboid(rug, v(-0.5, 0.008, 0.35), v(1.5, 0.008, 1.0), 0.0);
     // Sofa along the far wall.
     b.cuboid(fabric, v(-0.6, 0.24, 1.6), v(1.15, 0.16, 0.45), 0.0);
@@ -126,7 +87,7 @@ fn furniture(b: &mut SceneBuilder) {
     }
     bookshelf(b, dark_wood);
     // A picture above the sofa.
-    let frame = b.material(lacquer(0.05, 0.05, 0.05, 0.2));
+    let frame = b.material(lacquer(Rgb::new(0.05, 0.05, 0.05), 0.2));
     let canvas = b.diffuse(0.72, 0.60, 0.30);
     let stroke = b.diffuse(0.10, 0.16, 0.45);
     b.cuboid(frame, v(-0.6, 1.62, 2.18), v(0.62, 0.4, 0.02), 0.0);
@@ -165,15 +126,10 @@ fn bookshelf(b: &mut SceneBuilder, wood: crate::reference::MaterialId) {
 }
 
 fn table_ware(b: &mut SceneBuilder) {
-    let brass = b.material(two_sided(metal("Au", 0.12)));
-    let chrome = b.material(two_sided(metal("Cr", 0.1)));
-    let porcelain = b.material(lacquer(0.78, 0.78, 0.76, 0.05));
-    let glass = b.material(Material::Dielectric {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    });
+    let brass = b.material(metal("Au", 0.12));
+    let chrome = b.material(metal("Cr", 0.1));
+    let porcelain = b.material(lacquer(Rgb::new(0.78, 0.78, 0.76), 0.05));
+    let glass = b.material(glass());
     b.sphere(glass, v(-0.25, 0.52, 0.30), 0.1);
     b.sphere(chrome, v(-0.82, 0.50, 0.52), 0.08);
     // A bowl and a vase.

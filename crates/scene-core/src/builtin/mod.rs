@@ -1,15 +1,26 @@
 //! Scenes that need no file: generated here, so that everything runs with no download.
 
+mod conference;
 mod cornell_box;
+mod finish;
+mod form;
 mod furnace;
+mod furniture;
 mod interior;
+mod office;
+mod plane;
 mod shapes;
+mod solids;
+mod variety;
 
 use crate::reference::SceneDescription;
 
+pub use conference::conference;
 pub use cornell_box::cornell_box;
 pub use furnace::{furnace, furnace_box};
 pub use interior::interior;
+pub use office::office;
+pub use plane::{plane_light, plane_point};
 pub use shapes::SceneBuilder;
 
 /// A builtin scene.
@@ -42,6 +53,18 @@ impl Builtin {
             about: "a furnished room in the evening, lit by a ceiling panel and a lamp",
             make: interior,
         },
+        Self {
+            name: "office",
+            about: "a furnished office whose lamps shine at the ceiling and the walls",
+            make: office,
+        },
+        Self {
+            name: "conference",
+            about: "a conference room with twelve chairs under eight ceiling panels",
+            make: conference,
+        },
+        Self { name: "plane-light", about: "a light that stands upright on a plane", make: plane_light },
+        Self { name: "plane-point", about: "a point light closely over a plane", make: plane_point },
     ];
 
     /// The builtin scene of this name.
