@@ -62,10 +62,10 @@ fn room(b: &mut SceneBuilder, f: &Finishes) {
 
 fn lamps(b: &mut SceneBuilder, f: &Finishes) {
     for (x, z) in (0..4).flat_map(|i| [-0.9, 0.9].map(|z| (1.8 * i as f32 - 3.0, z))) {
-        furniture::ceiling_panel(b, f, at(x, ROOM.height, z, 0.0), 1.18, 0.28, Rgb::new(1.0, 0.93, 0.82) * 11.0);
+        furniture::ceiling_panel(b, f, at(x, ROOM.height, z, 0.0), 1.18, 0.28, Rgb::new(1.0, 0.93, 0.82) * 19.0);
     }
     let cove = ROOM.wall_frame(0) * at(0.0, 2.36, 0.064, 0.0);
-    furniture::cove(b, f, cove, 7.9, Rgb::new(1.0, 0.80, 0.56) * 8.0);
+    furniture::cove(b, f, cove, 7.9, Rgb::new(1.0, 0.80, 0.56) * 12.0);
     furniture::projector(b, f, at(0.0, ROOM.height, 0.0, 270.0));
 }
 
