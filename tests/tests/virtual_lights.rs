@@ -13,7 +13,7 @@ use lichtwerk_tests::planted::NothingSpecular;
 use lichtwerk_tests::{Effort, assets, block_means, scenes};
 use qmc_sampling::Interleaved;
 use scene_core::builtin::Builtin;
-use scene_core::{Scene, SceneDescription};
+use scene_core::{ReferenceScene, Scene, SceneDescription};
 use vpl_gi::{ShadowRays, Threshold};
 
 /// Quick and long forms count: both may run.
@@ -31,7 +31,7 @@ fn robust(threshold: f32, partition: PartitionName, interleaved: bool) -> Render
     let light_paths = LightPathSettings {
         threshold: Some(Threshold::Normalised(threshold)),
         partition,
-        light_paths: if interleaved { 8 } else { 1 },
+        light_paths: if interleaved { 4 } else { 1 },
         interleave,
         ..LightPathSettings::default()
     };
@@ -123,7 +123,10 @@ both_forms! {
     };
     robust_equals_path_in_the_modern_hall => |test, effort, quick: bool| {
         let Some(description) = assets::modern_hall() else { return };
-        equal_on(test, scenes::resized(description, scenes::SIZE, scenes::SIZE), effort, quick);
+        // Some of its triangles have no area, which is a warning.
+        let scene = ReferenceScene::new(scenes::resized(description, scenes::SIZE, scenes::SIZE)).unwrap();
+        let thresholds: &[f32] = if quick { &[10.0] } else { &THRESHOLDS };
+        Truth::new(test, scene, effort).equals_everywhere(thresholds, quick);
     };
 }
 
@@ -164,7 +167,7 @@ fn planted_bugs_are_rejected() {
 
     // Rays that end at the partition's reach miss the glass behind.
     let truth = Truth::new("planted in glass", scenes::build(scenes::glass_ball()), Effort::QUICK);
-    let settings = robust(10.0, PartitionName::Hard, true);
+    let settings = robust(1000.0, PartitionName::Hard, true);
     let wrong =
         block_means("rays too short", &NothingSpecular(scenes::build(scenes::glass_ball())), &settings, truth.effort);
     println!("{}", truth.path.agrees_with(SUITE.twin("rays too short"), &wrong).expect_reject());
@@ -214,7 +217,7 @@ fn limits_trace_what_they_must() {
     let path = render(&scene, &robust(0.0, PartitionName::Hard, true), 1);
     assert_eq!(path.rays.visibility, 0);
     let radiosity = render(&scene, &robust(f32::INFINITY, PartitionName::Hard, true), 1);
-    let light_rays = 4 * 9 * 8 * 3;
+    let light_rays = 4 * 9 * 4 * 3;
     assert!(radiosity.rays.visibility > 0);
     assert!(radiosity.rays.closest_hit <= pixels + light_rays, "{:?}", radiosity.rays);
 }
