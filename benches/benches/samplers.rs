@@ -6,6 +6,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use qmc_sampling::sampler::{GlobalHalton, GlobalSobol, PaddedLattice, ZSobol};
 use qmc_sampling::{Independent, OwenSobol, Sampler, SamplerFamily};
 
 /// Paths per iteration.
@@ -35,6 +36,10 @@ fn samplers(criterion: &mut Criterion) {
     }
     bench(criterion, "Independent", &Independent::new(1));
     bench(criterion, "OwenSobol", &OwenSobol::new(1));
+    bench(criterion, "GlobalSobol", &GlobalSobol::new(1024, 1024, 1).expect("a valid size"));
+    bench(criterion, "GlobalHalton", &GlobalHalton::new(1024, 1024, 1).expect("a valid size"));
+    bench(criterion, "ZSobol", &ZSobol::new(1024, 1024, PATHS as u32, 1).expect("a valid size"));
+    bench(criterion, "PaddedLattice", &PaddedLattice::new(1));
 }
 
 criterion_group!(benches, samplers);

@@ -1,6 +1,6 @@
 //! The samplers beside their peers, in one run: `cargo bench -p qmc-sampling`. Throughput is in values.
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
-use qmc_sampling::sampler::{GlobalSobol, PaddedLattice, ZSobol};
+use qmc_sampling::sampler::{GlobalHalton, GlobalSobol, PaddedLattice, ZSobol};
 use qmc_sampling::{Independent, OwenSobol, Sampler, SamplerFamily};
 use rand::Rng;
 use std::hint::black_box;
@@ -117,6 +117,7 @@ fn pairs(criterion: &mut Criterion) {
     bench(&mut group, "OwenSobol", &OwenSobol::new(1));
     bench(&mut group, "GlobalSobol", &GlobalSobol::new(4096, 4096, 1).expect("a valid size"));
     bench(&mut group, "ZSobol", &ZSobol::new(4096, 4096, PATHS, 1).expect("a valid size"));
+    bench(&mut group, "GlobalHalton", &GlobalHalton::new(4096, 4096, 1).expect("a valid size"));
     bench(&mut group, "PaddedLattice", &PaddedLattice::new(1));
     group.finish();
 }

@@ -20,14 +20,14 @@ const BASELINE: SamplerName = SamplerName::Independent;
 /// of them alike.
 pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
     let trials = context.effort(8, 16);
-    let side = context.effort(48, 128);
+    let side = context.effort(48, 96);
     let setup = Setup::builtin(context, SCENE, [side; 2])?;
     let names = SamplerName::all();
     let progress = context.progress(2 * trials * names.len() as u64);
-    let reference = setup.reference(context, context.effort(4096, 16384))?;
+    let reference = setup.reference(context, context.effort(4096, 8192))?;
 
     // Render all samplers in turn, each with its number of samples.
-    let compare = |stage: &str, samples: &[u64]| -> Result<Vec<Trials>, Failure> {
+    let compare = |stage: &str, samples: &[u64], pictures: bool| -> Result<Vec<Trials>, Failure> {
         let mut all = vec![Trials::new(); names.len()];
         for trial in 0..trials {
             for ((&sampler, &samples), of_sampler) in names.iter().zip(samples).zip(&mut all) {
@@ -35,7 +35,7 @@ pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
                 let seed = context.seed_of(&format!("{stage}, {}", sampler.name()), trial);
                 let rendering = setup.render(&settings, samples, seed)?;
                 of_sampler.push(&rendering, &reference)?;
-                if trial == 0 && samples == SAMPLES {
+                if trial == 0 && pictures {
                     context.save_picture(&sampler.name(), &rendering.film.develop(rendering.light_paths), 0.0)?;
                 }
                 progress.add(1);
@@ -43,12 +43,12 @@ pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
         }
         Ok(all)
     };
-    let equal_samples = compare("equal samples", &vec![SAMPLES; names.len()])?;
+    let equal_samples = compare("equal samples", &vec![SAMPLES; names.len()], true)?;
     let baseline = names.iter().position(|&name| name == BASELINE).ok_or("the baseline is no sampler")?;
     let cost = |trials: &Trials| trials.seconds().mean() / equal_samples[baseline].seconds().mean();
     let affordable: Vec<u64> =
         equal_samples.iter().map(|trials| ((SAMPLES as f64 / cost(trials)).round() as u64).max(1)).collect();
-    let equal_time = compare("equal time", &affordable)?;
+    let equal_time = compare("equal time", &affordable, false)?;
     progress.finish();
 
     // Report.

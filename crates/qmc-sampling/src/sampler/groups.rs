@@ -81,7 +81,7 @@ impl<S: DrawGroup<B>, B: Group> Groups<S, B> {
         }
         self.dimension = self.dimension.wrapping_add(self.dimension % 2);
         self.provide();
-        let first = self.dimension % B::LEN & !1;
+        let first = (self.dimension % B::LEN) & !1;
         self.dimension = self.dimension.wrapping_add(2);
         [self.group.get(first), self.group.get(first + 1)]
     }

@@ -141,7 +141,7 @@ mod tests {
         for bits in [2, 5, 10, 34, 40, 63] {
             for key in [0, 1, mix64(5)] {
                 let depth = bits.min(10);
-                let start = mix64(key) >> (64 - bits) & !((1 << depth) - 1);
+                let start = (mix64(key) >> (64 - bits)) & !((1 << depth) - 1);
                 let mut block: Vec<u64> = (start..start + (1 << depth)).map(|i| permuted(i, bits, key)).collect();
                 // Digits of block numbers: pairs from the top of the number.
                 let mut shift = bits % 2;
@@ -166,7 +166,7 @@ mod tests {
             let mut counts = BTreeMap::new();
             for key in 0..trials {
                 let shift = bits - 2 - 2 * digit;
-                let prefix = mix64(key) >> (64 - bits) & !((4 << shift) - 1);
+                let prefix = (mix64(key) >> (64 - bits)) & !((4 << shift) - 1);
                 let permutation: [u64; 4] = core::array::from_fn(|d| {
                     (permuted(prefix | ((d as u64) << shift), bits, mix64(!key)) >> shift) & 3
                 });
