@@ -45,7 +45,7 @@ impl<I: SamplerImpl> SamplerFamily for OpenQmc<I> {
     }
 }
 
-/// The sampler of [`OpenQmc`].
+/// The sampler of [`OpenQmc`]: 32 bytes at most, 64 with blue noise, of which it refers to the tables.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenQmcSampler<I: SamplerImpl>(Groups<Root<I>, [f32; 4]>);
 
@@ -90,6 +90,20 @@ impl<I: SamplerImpl> Split for OpenQmcSampler<I> {
 mod tests {
     use super::*;
 
+    /// Longer than OpenQMC's own indices, and for light paths.
+    #[test]
+    fn blocks_of_paths_streams_and_seeds_differ() {
+        let first = |seed, stream, index| {
+            OpenQmc::<openqmc::sobol::SobolImpl>::new(10, seed).sampler(stream, index).next_2d().map(f32::to_bits)
+        };
+        let places = [(0, 0), (0, 1 << 16), (0, 1 << 31), (0, 1 << 40), (1 << 40, 0), (1 << 41, 0)];
+        let mut all: std::vec::Vec<_> =
+            [3, 4].iter().flat_map(|&seed| places.map(|(stream, index)| first(seed, stream, index))).collect();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 2 * places.len());
+    }
+
     #[test]
     fn is_openqmc_and_small() {
         let mut sampler = OpenQmc::<openqmc::sobol::SobolImpl>::new(10, 3).sampler(42, 5);
@@ -98,5 +112,6 @@ mod tests {
         assert_eq!([0; 4].map(|_| sampler.next_1d()), theirs);
         assert_ne!(sampler.fork(0).next_2d(), sampler.fork(1).next_2d());
         assert!(size_of::<OpenQmcSampler<openqmc::sobol::SobolImpl>>() <= 32);
+        assert!(size_of::<OpenQmcSampler<openqmc::sobolbn::SobolBnImpl>>() <= 64);
     }
 }
