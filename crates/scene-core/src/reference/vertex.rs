@@ -142,6 +142,7 @@ impl Vertex for SceneVertex<'_> {
         self.bsdf.albedo(self.wo_local)
     }
 
+    #[inline]
     fn reversed(&self, wi: Vec3A) -> Self {
         Self { wo: wi, wo_local: self.frame.to_local(wi), ..*self }
     }

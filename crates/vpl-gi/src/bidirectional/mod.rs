@@ -3,6 +3,7 @@
 mod density;
 mod light_paths;
 mod path;
+mod path_densities;
 mod radiance;
 mod splats;
 mod techniques;
@@ -48,14 +49,45 @@ pub enum TechniqueSet {
 /// - Russian roulette does not occur: it divides contributions, not densities;
 /// - light seen directly is found by technique 0 alone.
 ///
-/// **Unbiased** up to `max_depth`, except for what no technique of the set can generate. Without the connection to the lens that is light of Dirac emitters
-/// that reaches the first vertex by specular surfaces alone; `max_length` of `tracing` may be shorter than the path.
+/// **Unbiased** up to `max_depth`, except for what no technique of the set can generate: light of Dirac emitters along paths without two
+/// neighbours that can be connected, such as their caustics seen in a mirror, and without the connection to the lens also those seen
+/// directly. `max_length` of `tracing` may be shorter than the path.
 ///
 /// **Cost.** Per eye vertex a shading loop over all light vertices; a weight and a shadow ray for each that contributes. A weight costs four densities of
 /// scattering beside the connection and one multiplication per vertex, and nothing if the heuristic asks for no densities.
 ///
 /// **Source.** P0, section 3.1; Veach and Guibas, "Bidirectional Estimators for Light Transport", 1994; Veach 1997, chapter 10; Lafortune and Willems, "Bi-directional
 /// Path Tracing", 1993. Light paths that several eye paths share: Keller and Heidrich, "Interleaved Sampling", 2001.
+///
+/// # Example
+/// In a closed box that emits 1 and reflects half of it the radiance is `1 + 1/2 + 1/4 + ..` everywhere.
+/// ```
+/// use mis_heuristics::Balance;
+/// use qmc_sampling::{Independent, SamplerFamily};
+/// use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor, Spectrum, UniformChoice, builtin};
+/// use vpl_gi::{Bidirectional, Classical, LightPaths, LightTracing, TechniqueSet};
+///
+/// let scene = ReferenceScene::new(builtin::furnace_box(0.5, 1.0))?;
+/// let (choice, roulette) = (UniformChoice::new(scene.emitters().len()), RussianRoulette::Never);
+/// let estimator = Bidirectional {
+///     heuristic: Classical(Balance),
+///     techniques: TechniqueSet::WithoutLens,
+///     tracing: LightTracing { choice, max_length: u32::MAX, roulette },
+///     max_depth: 4,
+///     roulette,
+/// };
+/// let samplers = Independent::new(1);
+/// let mut lights = LightPaths::new(&scene); // used again for every ray
+/// let mut sum = 0.0;
+/// for index in 0..1000 {
+///     let mut sampler = samplers.sampler(0, index);
+///     estimator.trace_light_paths(&scene, &mut lights, 1, |_| samplers.sampler(1, index));
+///     let ray = scene.sensor().sample_ray([10.0, 10.0], [0.5; 2]).ray;
+///     sum += estimator.radiance(&scene, &lights, ray, &mut sampler, &mut ()).luminance();
+/// }
+/// assert!((sum / 1000.0 - 1.875).abs() < 0.1);
+/// # Ok::<(), scene_core::SceneError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Bidirectional<H, C> {
     /// Weighs the techniques.

@@ -1,14 +1,11 @@
 //! A complete path, put together from an eye and a light path, and the densities of all its techniques.
 
-use std::cell::OnceCell;
-
 use glam::Vec3A;
 use mis_heuristics::Densities;
-use scene_core::{Emitter, EmitterId, Scene, SurfacePoint, TransportMode, Vertex};
-use smallvec::SmallVec;
+use scene_core::{Emitter, EmitterId, Scene, SurfacePoint, Vertex};
 
-use super::density::{by_area, through_disk};
-use super::light_paths::{LightPaths, LightStart, LightVertex, Origin, backward};
+use super::light_paths::{LightPaths, LightStart, LightVertex, Origin};
+use super::path_densities::PathDensities;
 use super::techniques::PathTechniques;
 use crate::lights::{LightKind, geometry_term};
 
@@ -62,6 +59,9 @@ pub(super) struct Samples {
     pub(super) to_lens: Option<f64>,
 }
 
+/// Dirac emitters do not look at these numbers.
+pub(super) const CENTRE: [f32; 2] = [0.5; 2];
+
 /// A complete path.
 pub(super) struct Path<'a, S, X, V: Vertex> {
     pub(super) scene: &'a S,
@@ -71,11 +71,13 @@ pub(super) struct Path<'a, S, X, V: Vertex> {
     pub(super) lens: LensRay,
     pub(super) samples: Samples,
     pub(super) joint: Joint<'a, X>,
+    /// Number of light vertices: the technique that generated the path.
+    pub(super) technique: usize,
 }
 
 /// Where a vertex is.
 #[derive(Clone, Copy)]
-enum Place<'a> {
+pub(super) enum Place<'a> {
     Point(&'a SurfacePoint),
     Space(Vec3A),
     /// In this direction.
@@ -90,23 +92,11 @@ where
 {
     /// The last light vertex.
     #[inline]
-    fn light(&self) -> Option<usize> {
+    pub(super) fn light(&self) -> Option<usize> {
         match self.joint {
             Joint::Hit { .. } => None,
             Joint::Connection { light, .. } | Joint::Lens { light, .. } => Some(light),
         }
-    }
-
-    /// Number of light vertices: the technique that generated the path.
-    #[inline]
-    pub(super) fn technique(&self) -> usize {
-        self.light().map_or(0, |light| self.lights.lights().as_slice()[light].length as usize + 1)
-    }
-
-    /// Whether the light cannot be hit.
-    #[inline]
-    fn ends_in_delta(&self) -> bool {
-        self.light().is_some_and(|light| self.lights.start_of(light).at.is_delta())
     }
 
     /// The vertex `y_j` of the light path, `j` from 1 to that of the connection.
@@ -117,7 +107,7 @@ where
     }
 
     #[inline]
-    fn start(&self, light: usize) -> &LightStart {
+    pub(super) fn start(&self, light: usize) -> &LightStart {
         self.lights.start_of(light)
     }
 
@@ -146,6 +136,20 @@ where
         }
     }
 
+    /// Where the light path was before its last vertex, which is a surface.
+    #[inline]
+    pub(super) fn before(&self, light: usize) -> Place<'_> {
+        if self.technique > 2 {
+            let before = self.lights.lights().as_slice()[light - 1].point();
+            return before.map_or(Place::Infinity(Vec3A::ZERO), Place::Point);
+        }
+        match &self.start(light).at {
+            Origin::Surface(point) => Place::Point(point),
+            // A density by solid angle, or one that does not matter.
+            _ => Place::Infinity(Vec3A::ZERO),
+        }
+    }
+
     /// Where the Dirac emitter is that the eye path is connected to.
     fn whole_delta(&self, light: usize) -> Place<'_> {
         let Joint::Connection { vertex, wi, .. } = &self.joint else { return Place::Infinity(Vec3A::ZERO) };
@@ -157,151 +161,12 @@ where
         at.map_or(Place::Infinity(*wi), |(point, _)| Place::Space(point.position))
     }
 
-    /// Samples of technique `i`, times the probability of a Dirac emitter.
-    #[inline]
-    fn count(&self, i: usize) -> f64 {
-        let delta = self.light().filter(|_| self.ends_in_delta()).map(|light| self.start(light).forward);
-        let count = match i {
-            0 if delta.is_some() => return 0.0,
-            0 => return 1.0,
-            1 if delta.is_some() && self.lights.deltas_once() => return 1.0,
-            _ if i == self.segments() => self.samples.to_lens.unwrap_or(0.0),
-            _ => self.samples.per_eye_path,
-        };
-        count * delta.unwrap_or(1.0)
-    }
-
-    /// Densities with which an eye path would generate the last two light vertices.
-    fn light_end(&self) -> [f64; 2] {
-        let (light, towards_eye, last) = match &self.joint {
-            Joint::Hit { .. } => return [0.0; 2],
-            Joint::Connection { vertex, light, wi } => {
-                let pdf = vertex.pdf_solid_angle(*wi, TransportMode::Radiance);
-                let last = match self.lights.lights().as_slice()[*light].point() {
-                    Some(point) => by_area(pdf, vertex.point().position, point),
-                    // Only light that is distant, for Dirac emitters cannot be hit.
-                    None => f64::from(pdf),
-                };
-                (*light, -*wi, last)
-            }
-            Joint::Lens { light, wi } => {
-                let point = self.lights.lights().as_slice()[*light].point();
-                let unit = point.map_or(0.0, |point| by_area(1.0, self.lens.origin, point));
-                (*light, *wi, unit * self.lens.density)
-            }
-        };
-        let LightKind::Surface(vertex) = &self.lights.lights().as_slice()[light].kind else { return [last, 0.0] };
-        let pdf = backward(vertex, towards_eye, TransportMode::Radiance);
-        let from = vertex.point().position;
-        let before_last = match self.place(self.eye.len() + 2) {
-            Place::Point(point) => by_area(pdf, from, point),
-            Place::Space(_) | Place::Infinity(_) => f64::from(pdf),
-        };
-        [last, before_last]
-    }
-
-    /// Densities with which a light path would generate the last two eye vertices.
-    fn eye_end(&self) -> [f64; 2] {
-        let before = self.eye.len().checked_sub(2).and_then(|k| self.eye[k].point.as_ref());
-        match &self.joint {
-            Joint::Lens { .. } => [0.0; 2],
-            Joint::Hit { vertex, towards_eye, emitter, probability } => {
-                let source = &self.scene.emitters()[emitter.index()];
-                let (area, solid_angle) = source.pdf_emission(vertex.map(Vertex::point), *towards_eye);
-                let choice = f64::from(*probability);
-                match vertex {
-                    Some(vertex) => {
-                        let from = vertex.point().position;
-                        [choice * f64::from(area), before.map_or(0.0, |point| by_area(solid_angle, from, point))]
-                    }
-                    None => [
-                        choice * f64::from(solid_angle),
-                        before.map_or(0.0, |point| through_disk(area, *towards_eye, point)),
-                    ],
-                }
-            }
-            Joint::Connection { vertex, light, wi } => {
-                let point = vertex.point();
-                let emitter = |id: EmitterId| &self.scene.emitters()[id.index()];
-                let last = match &self.lights.lights().as_slice()[*light].kind {
-                    LightKind::Surface(y) => {
-                        by_area(y.pdf_solid_angle(-*wi, TransportMode::Importance), y.point().position, point)
-                    }
-                    LightKind::Emission { emitter: id, point: y } => {
-                        by_area(emitter(*id).pdf_emission(Some(y), -*wi).1, y.position, point)
-                    }
-                    LightKind::Distant { emitter: id, .. } => {
-                        through_disk(emitter(*id).pdf_emission(None, -*wi).0, *wi, point)
-                    }
-                    LightKind::Delta { emitter: id } => delta_density(emitter(*id), point, *wi),
-                };
-                let before_last = before.map_or(0.0, |before| {
-                    by_area(backward(*vertex, *wi, TransportMode::Importance), point.position, before)
-                });
-                [last, before_last]
-            }
-        }
-    }
-
-    /// Densities of the techniques with fewer light vertices than this one, the next first.
-    fn fewer_light_vertices(&self) -> Side {
-        let technique = self.technique();
-        let Some(light) = self.light() else { return Side::new() };
-        let end = self.light_end();
-        let mut product = 1.0 / self.count(technique);
-        let mut densities = Side::new();
-        for j in (0..technique).rev() {
-            // y_j goes over to the eye path.
-            let (forward, ratio) = if j == 0 {
-                let start = self.start(light);
-                (start.forward, start.ratio)
-            } else {
-                let vertex = self.light_vertex(light, j).1;
-                (vertex.forward, vertex.ratio)
-            };
-            product *= if j + 3 > technique { end[technique - 1 - j] / forward } else { ratio };
-            let is_possible = if j == 0 { self.can_hit() } else { self.can_connect(self.segments() - j) };
-            densities.push(if is_possible { product * self.count(j) } else { 0.0 });
-        }
-        densities
-    }
-
-    /// Densities of the techniques with more light vertices than this one, the next first.
-    fn more_light_vertices(&self) -> Side {
-        let technique = self.technique();
-        let techniques = self.techniques();
-        let end = self.eye_end();
-        let mut product = 1.0 / self.count(technique);
-        let mut densities = Side::new();
-        for i in technique + 1..techniques {
-            // x_k goes over to the light path.
-            let k = self.segments() + 1 - i;
-            let vertex = &self.eye[k - 1];
-            let from_end = self.eye.len() - k;
-            product *= if from_end < 2 { end[from_end] / vertex.forward } else { vertex.ratio };
-            densities.push(if self.can_connect(k - 1) { product * self.count(i) } else { 0.0 });
-        }
-        densities
-    }
-
     /// Number of techniques. Light that is seen directly has one.
     #[inline]
-    fn techniques(&self) -> usize {
+    pub(super) fn techniques(&self) -> usize {
         let segments = self.segments();
         segments + usize::from(self.samples.to_lens.is_some() && segments > 1)
     }
-}
-
-/// Dirac emitters do not look at these numbers.
-pub(super) const CENTRE: [f32; 2] = [0.5; 2];
-
-/// Density by area with which light of a Dirac emitter arrives at `to`, in direction `-wi`.
-fn delta_density<E: Emitter>(emitter: &E, to: &SurfacePoint, wi: Vec3A) -> f64 {
-    if emitter.is_infinite() {
-        return through_disk(emitter.pdf_emission(None, -wi).0, wi, to);
-    }
-    let Some((at, _)) = emitter.sample_direct(to.position, CENTRE).and_then(|direct| direct.at) else { return 0.0 };
-    by_area(emitter.pdf_emission(Some(&at), -wi).1, at.position, to)
 }
 
 impl<S, X, V> PathTechniques for Path<'_, S, X, V>
@@ -312,17 +177,11 @@ where
 {
     #[inline]
     fn segments(&self) -> usize {
-        self.eye.len() + self.technique()
+        self.eye.len() + self.technique
     }
 
     fn densities(&self) -> impl Densities<f64> {
-        PathDensities {
-            path: self,
-            technique: self.technique(),
-            techniques: self.techniques(),
-            fewer: OnceCell::new(),
-            more: OnceCell::new(),
-        }
+        PathDensities::new(self)
     }
 
     fn geometry_term(&self, k: usize) -> f32 {
@@ -358,7 +217,7 @@ where
         // The vertices at the connection are none, nor is the start.
         let j = self.segments() - k;
         match self.light() {
-            Some(light) if k > connected && j > 0 && j + 1 < self.technique() => {
+            Some(light) if k > connected && j > 0 && j + 1 < self.technique => {
                 self.light_vertex(light, j).1.is_specular
             }
             _ => false,
@@ -377,41 +236,6 @@ where
 
     #[inline]
     fn can_hit(&self) -> bool {
-        !self.ends_in_delta()
-    }
-}
-
-/// Densities of some of the techniques of one path.
-type Side = SmallVec<[f64; 12]>;
-
-/// Densities over that of the technique that generated the path.
-struct PathDensities<'a, P> {
-    path: &'a P,
-    technique: usize,
-    techniques: usize,
-    fewer: OnceCell<Side>,
-    more: OnceCell<Side>,
-}
-
-impl<S, X, V> Densities<f64> for PathDensities<'_, Path<'_, S, X, V>>
-where
-    S: Scene,
-    X: Vertex,
-    V: Vertex,
-{
-    #[inline]
-    fn len(&self) -> usize {
-        self.techniques
-    }
-
-    #[inline]
-    fn density(&self, technique: usize) -> f64 {
-        if technique < self.technique {
-            self.fewer.get_or_init(|| self.path.fewer_light_vertices())[self.technique - 1 - technique]
-        } else if technique > self.technique {
-            self.more.get_or_init(|| self.path.more_light_vertices())[technique - self.technique - 1]
-        } else {
-            1.0
-        }
+        !self.light().is_some_and(|light| self.start(light).at.is_delta())
     }
 }

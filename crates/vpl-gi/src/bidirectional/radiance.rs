@@ -153,9 +153,9 @@ where
         before.ratio = density / before.forward;
     }
 
-    fn path<'b>(&'b self, joint: Joint<'b, S::Vertex<'s>>) -> Path<'b, S, S::Vertex<'s>, V> {
+    fn path<'b>(&'b self, joint: Joint<'b, S::Vertex<'s>>, technique: usize) -> Path<'b, S, S::Vertex<'s>, V> {
         let (scene, lights, lens, samples) = (self.scene, self.lights, self.lens, self.samples);
-        Path { scene, lights, eye: &self.vertices, lens, samples, joint }
+        Path { scene, lights, eye: &self.vertices, lens, samples, joint, technique }
     }
 
     /// The contribution of technique 0: the eye path's last vertex emits `value`.
@@ -175,7 +175,7 @@ where
             value
         } else {
             let probability = self.settings.tracing.choice.probability(None, emitter);
-            let path = self.path(Joint::Hit { vertex, towards_eye, emitter, probability });
+            let path = self.path(Joint::Hit { vertex, towards_eye, emitter, probability }, 0);
             value * self.settings.heuristic.weight(0, &path) as f32
         };
         observer.contribution(length as u32, None, value);
@@ -205,9 +205,14 @@ where
             LightKind::Emission { point, .. } => (point.position - vertex.point().position).normalize(),
             LightKind::Surface(y) => (y.point().position - vertex.point().position).normalize(),
         };
-        let path = self.path(Joint::Connection { vertex, light, wi });
-        let weight = self.settings.heuristic.weight(path.technique(), &path) as f32;
-        if weight == 0.0 || self.scene.occluded(&shadow_ray(self.scene, vertex, lights, light)) {
+        let heuristic = &self.settings.heuristic;
+        let is_occluded = || self.scene.occluded(&shadow_ray(self.scene, vertex, lights, light));
+        if !heuristic.weighs_first() && is_occluded() {
+            return S::Spectrum::ZERO;
+        }
+        let technique = end.length as usize + 1;
+        let weight = heuristic.weight(technique, &self.path(Joint::Connection { vertex, light, wi }, technique)) as f32;
+        if weight == 0.0 || (heuristic.weighs_first() && is_occluded()) {
             return S::Spectrum::ZERO;
         }
         let value = value * weight;

@@ -1,7 +1,7 @@
 //! Light paths: connecting to the lens.
 
 use qmc_sampling::Sampler;
-use scene_core::{Scene, Sensor, Spectrum, TransportMode, Vertex};
+use scene_core::{EmitterChoice, Scene, Sensor, Spectrum, TransportMode, Vertex};
 
 use super::light_paths::LightPaths;
 use super::path::{Joint, LensRay, Path};
@@ -9,10 +9,7 @@ use super::techniques::PathHeuristic;
 use super::{Bidirectional, TechniqueSet};
 use crate::lights::LightKind;
 
-impl<H: PathHeuristic, C> Bidirectional<H, C>
-where
-    C: scene_core::EmitterChoice,
-{
+impl<H: PathHeuristic, C: EmitterChoice> Bidirectional<H, C> {
     /// Connects every vertex of the light paths to the lens, and calls `splat` with the raster position and the value of each that contributes.
     ///
     /// The mean over all light paths (not over calls), times the reconstruction filter, is what is to be added to the image of
@@ -59,8 +56,9 @@ where
                 lens: LensRay { origin, density },
                 samples,
                 joint: Joint::Lens { light: index, wi: connection.wi },
+                technique: light.length as usize + 1,
             };
-            let weight = self.heuristic.weight(path.technique(), &path) as f32;
+            let weight = self.heuristic.weight(path.technique, &path) as f32;
             if weight != 0.0 && scene.visible(vertex.point(), &connection.lens) {
                 splat(connection.raster, value * weight);
             }

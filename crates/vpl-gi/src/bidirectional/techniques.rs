@@ -55,6 +55,13 @@ pub trait PathTechniques {
 pub trait PathHeuristic {
     /// The weight of `technique`.
     fn weight(&self, technique: usize, path: &impl PathTechniques) -> f64;
+
+    /// Whether to weigh before the shadow ray is traced, because weights are cheap and often zero; otherwise what is occluded is never
+    /// weighed.
+    #[inline]
+    fn weighs_first(&self) -> bool {
+        false
+    }
 }
 
 /// Any [`Heuristic`] of densities: balance, power, maximum, cutoff, ...
@@ -99,5 +106,10 @@ impl PathHeuristic for Stratified {
             strata = strata.without_last();
         }
         strata.weight(technique, &Lazy::new(segments, |_| f64::NAN))
+    }
+
+    #[inline]
+    fn weighs_first(&self) -> bool {
+        true
     }
 }

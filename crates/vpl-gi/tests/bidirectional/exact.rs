@@ -7,7 +7,7 @@ use mis_heuristics::{Balance, Counting, Cutoff, Densities, Heuristic, Maximum, P
 use qmc_sampling::{Independent, SamplerFamily};
 use scene_core::glam::Vec3A;
 use scene_core::{ReferenceScene, Scene, UniformChoice};
-use vpl_gi::{Classical, LightPaths, Partition, PathHeuristic, PathTechniques, Stratified, TechniqueSet};
+use vpl_gi::{Classical, LightPaths, Partition, PathHeuristic, PathTechniques, RobustIgi, Stratified, TechniqueSet};
 
 use crate::oracle::{Counts, Flat};
 use crate::render::{Sharing, bidirectional, sensor_ray};
@@ -276,4 +276,38 @@ fn no_light_paths() {
     let radiance = estimator.radiance(&scene, &lights, ray, &mut sampler, &mut ());
     assert_eq!(radiance, scene_core::Rgb::ZERO);
     estimator.splats(&scene, &lights, &mut sampler, |_, _| panic!("there is nothing to connect"));
+}
+
+/// Robust instant global illumination is the stratification heuristic with what it weighs zero left out: with the same numbers and the
+/// same light paths, the radiance along every ray is the same.
+#[test]
+fn stratified_is_robust_instant_global_illumination() {
+    for scene in
+        [scenes::diffuse(), scenes::glossy(), scenes::glass_ball(), scenes::environment(), scenes::delta_lights()]
+    {
+        let threshold = 3.0 / scene.bounding_sphere().1.powi(2);
+        for partition in [Partition::hard(threshold), Partition::soft(threshold), Partition::distance(threshold)] {
+            let partition = partition.unwrap();
+            let estimator = bidirectional(&scene, Stratified(partition), TechniqueSet::WithoutLens);
+            let (max_depth, roulette) = (estimator.max_depth, estimator.roulette);
+            let robust = RobustIgi { max_depth, roulette, ..RobustIgi::new(partition) };
+            let family = Independent::new(estimator_checks::seed("robust"));
+            let mut lights = LightPaths::new(&scene);
+            let mut lit = 0;
+            for pixel in 0..u64::from(SIZE * SIZE) {
+                estimator.trace_light_paths(&scene, &mut lights, 5, |path| {
+                    family.sampler(1 << 40, 5 * pixel + u64::from(path))
+                });
+                let mut sampler = family.sampler(pixel, 0);
+                let (_, ray) = sensor_ray(&scene, pixel, &mut sampler);
+                let expected = robust.radiance(&scene, lights.lights(), ray, &mut sampler.clone());
+                let found = estimator.radiance(&scene, &lights, ray, &mut sampler, &mut ());
+                let difference = (found - expected).0.abs().max_element();
+                let scale = expected.0.max_element();
+                assert!(difference <= 1e-4 * scale, "{}, {partition:?}: {found:?} {expected:?}", scene.name());
+                lit += u32::from(scale > 0.0);
+            }
+            assert!(lit > 100, "{}: {lit}", scene.name());
+        }
+    }
 }
