@@ -26,7 +26,8 @@ pub enum TechniqueSet {
     /// Light paths are connected to the lens as well (technique `l`), by [`Bidirectional::splats`].
     WithLens {
         /// How many light paths are connected to the lens for each eye path of every pixel. With as many independent light paths
-        /// as eye paths it is the number of pixels; if pixels share light paths, it is the number of different ones.
+        /// as eye paths it is the number of pixels; if pixels share light paths, it is the number of different ones. None are if it is not
+        /// positive.
         light_paths: f64,
     },
 }
@@ -127,7 +128,7 @@ impl<H: PathHeuristic, C: EmitterChoice> Bidirectional<H, C> {
             per_eye_path: f64::from(lights.paths()),
             to_lens: match self.techniques {
                 TechniqueSet::WithoutLens => None,
-                TechniqueSet::WithLens { light_paths } => Some(light_paths),
+                TechniqueSet::WithLens { light_paths } => (light_paths > 0.0).then_some(light_paths),
             },
         }
     }

@@ -3,10 +3,10 @@
 use qmc_sampling::Sampler;
 use scene_core::{EmitterChoice, Scene, Sensor, Spectrum, TransportMode, Vertex};
 
+use super::Bidirectional;
 use super::light_paths::LightPaths;
 use super::path::{Joint, LensRay, Path};
 use super::techniques::PathHeuristic;
-use super::{Bidirectional, TechniqueSet};
 use crate::lights::LightKind;
 
 impl<H: PathHeuristic, C: EmitterChoice> Bidirectional<H, C> {
@@ -25,12 +25,13 @@ impl<H: PathHeuristic, C: EmitterChoice> Bidirectional<H, C> {
         S: Scene,
         V: Vertex<Spectrum = S::Spectrum>,
     {
-        if self.techniques == TechniqueSet::WithoutLens {
+        let samples = self.samples(lights);
+        if samples.to_lens.is_none() {
             return;
         }
         let [width, height] = scene.sensor().resolution();
         let pixels = f64::from(width) * f64::from(height);
-        let (paths, samples) = (lights.paths() as f32, self.samples(lights));
+        let paths = lights.paths() as f32;
         for (index, light) in lights.lights().as_slice().iter().enumerate() {
             let LightKind::Surface(vertex) = &light.kind else { continue };
             let u_lens = sampler.next_2d();

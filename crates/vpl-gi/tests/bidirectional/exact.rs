@@ -311,3 +311,23 @@ fn stratified_is_robust_instant_global_illumination() {
         }
     }
 }
+
+/// Zero light paths to the lens are no technique: nothing is divided by zero.
+#[test]
+fn no_light_paths_to_the_lens() {
+    let scene = scenes::diffuse();
+    let family = Independent::new(5);
+    let radiance = |techniques| {
+        let mut estimator = bidirectional(&scene, Classical(Balance), techniques);
+        estimator.tracing.max_length = 2;
+        let mut lights = LightPaths::new(&scene);
+        estimator.trace_light_paths(&scene, &mut lights, 2, |path| family.sampler(0, u64::from(path)));
+        let mut sampler = family.sampler(1, 0);
+        let (_, ray) = sensor_ray(&scene, 100, &mut sampler);
+        estimator.splats(&scene, &lights, &mut sampler.clone(), |_, _| panic!("there are none"));
+        estimator.radiance(&scene, &lights, ray, &mut sampler, &mut ())
+    };
+    for light_paths in [0.0, -1.0, f64::NAN] {
+        assert_eq!(radiance(TechniqueSet::WithLens { light_paths }), radiance(TechniqueSet::WithoutLens));
+    }
+}
