@@ -43,7 +43,8 @@ pub struct FinalGathering {
 ///
 /// **Assumptions.** A technique that cannot generate a path takes no share of it: edges from or to a Dirac delta go to the
 /// scattered ray, whatever their geometry term. To that end each component of a scattering function counts by itself: a coated
-/// surface is connected by its diffuse part and scattered by its coat. Dirac emitters, which no ray hits, are always connected;
+/// surface is connected by its diffuse part and scattered by its coat. Dirac emitters, which no ray hits, are always connected, and
+/// so are light vertices which they reach by mirrors and glass alone ([`VirtualPointLight::is_last_chance`](crate::VirtualPointLight::is_last_chance));
 /// light from infinity has `G = 0` and is connected for any `t > 0`.
 ///
 /// **Unbiased** up to `max_depth`, for every partition, with [`Residual::Scatter`] and without a [`CausticMap`]. Threshold 0 is path tracing without next event

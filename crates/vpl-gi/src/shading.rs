@@ -26,6 +26,7 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
 {
     let all = lights.as_slice();
     let is_too_long = |index: usize| longest < lights.longest() && all[index].length > longest;
+    let is_last_chance = |index: usize| lights.any_last_chance() && all[index].is_last_chance;
     let (from, normal) = (x.point().position, facing_normal(x));
     let diffuse = if lights.all_lambertian() { x.lambertian() } else { None };
     for (block, lanes) in lights.lanes().iter().enumerate() {
@@ -34,7 +35,8 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
             for (lane, g) in terms.into_iter().enumerate().filter(|(_, g)| *g > 0.0) {
                 let index = block * LANES + lane;
                 let distance = || all[index].point().map_or(0.0, |y| y.position.distance_squared(from));
-                let bounded = g * partition.share_with(g, distance);
+                let share = if is_last_chance(index) { 1.0 } else { partition.share_with(g, distance) };
+                let bounded = g * share;
                 if bounded > 0.0 && !is_too_long(index) {
                     with(index, f * lights.intensities()[index] * bounded);
                 }
@@ -47,7 +49,7 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
             let light = &all[index];
             let Some(y) = light.point() else { continue };
             let towards = Towards::new(from, y.position);
-            let share = partition.share(g, towards.d2);
+            let share = if is_last_chance(index) { 1.0 } else { partition.share(g, towards.d2) };
             if share <= 0.0 || is_too_long(index) {
                 continue;
             }
@@ -141,7 +143,7 @@ where
 {
     let mut sum = V::Spectrum::ZERO;
     match x.lambertian() {
-        Some(f) if lights.all_lambertian() && partition.is_of_geometry_term() => {
+        Some(f) if lights.all_lambertian() && !lights.any_last_chance() && partition.is_of_geometry_term() => {
             let (from, normal) = (x.point().position, facing_normal(x));
             for (lanes, intensities) in lights.lanes().iter().zip(lights.intensities().chunks(LANES)) {
                 let terms = lanes.geometry_terms::<true>(from, normal).map(|g| partition.bounded(g));

@@ -37,7 +37,7 @@ impl Candidate {
     }
 
     fn push(&mut self, rendering: &Rendering, reference: &LayeredImage) -> Result<(), Failure> {
-        let before = self.trials.relative_mse().clone();
+        let before = *self.trials.relative_mse();
         self.trials.push(rendering, reference)?;
         let count = self.trials.count() as f64;
         let error = self.trials.relative_mse().mean() * count - before.mean() * (count - 1.0);
@@ -129,7 +129,7 @@ fn compare(
     candidates: &mut [Candidate],
     reference: &LayeredImage,
 ) -> Result<(), Failure> {
-    let trials = context.effort(6, 12);
+    let trials = context.effort(12, 16);
     let progress = context.progress(trials * candidates.len() as u64);
     let is_cheap =
         |candidate: &Candidate| candidate.estimator == "path" || candidate.settings.light_paths.interleave.is_none();

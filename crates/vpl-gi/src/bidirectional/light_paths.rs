@@ -8,7 +8,7 @@ use scene_core::{Emitter, EmitterChoice, EmitterId, Scene, Spectrum, SurfacePoin
 
 use super::density::{by_area, through_disk};
 use crate::lights::{
-    LightKind, LightTracing, Start, VirtualPointLight, VirtualPointLights, light_of_start, light_of_vertex,
+    Edges, LightKind, LightTracing, Start, VirtualPointLight, VirtualPointLights, light_of_start, light_of_vertex,
 };
 
 /// Light paths `y_0 y_1 ..`, ready to be connected to eye paths and to the lens.
@@ -162,8 +162,10 @@ impl<V: Vertex> LightPaths<V> {
                 let forward = self.starts[self.starts.len() - 1].forward;
                 self.push(scene, light, forward);
             }
+            let mut edges = Edges::new(origin.is_delta());
             tracing.follow(scene, &start, &mut sampler, |walk| {
-                self.visit(scene, &start, &walk, paths);
+                let is_last_chance = edges.step(walk.length, walk.after_specular);
+                self.visit(scene, &start, &walk, VirtualPointLight { is_last_chance, ..light_of_vertex(&walk, paths) });
                 ControlFlow::Continue(())
             });
         }
@@ -196,8 +198,13 @@ impl<V: Vertex> LightPaths<V> {
     }
 
     /// A vertex of the light path whose start is the last.
-    fn visit<S>(&mut self, scene: &S, start: &Start<V::Spectrum>, walk: &WalkVertex<'_, V, V::Spectrum>, paths: u32)
-    where
+    fn visit<S>(
+        &mut self,
+        scene: &S,
+        start: &Start<V::Spectrum>,
+        walk: &WalkVertex<'_, V, V::Spectrum>,
+        light: VirtualPointLight<V>,
+    ) where
         S: Scene<Spectrum = V::Spectrum>,
     {
         let (point, direction) = (walk.vertex.point(), -walk.vertex.wo());
@@ -230,7 +237,7 @@ impl<V: Vertex> LightPaths<V> {
                 forward
             }
         };
-        self.push(scene, light_of_vertex(walk, paths), forward);
+        self.push(scene, light, forward);
     }
 
     fn choose_delta(&mut self, emitter: EmitterId, probability: f32) {
@@ -255,11 +262,7 @@ impl<V: Vertex> LightPaths<V> {
             let forward = f64::from(choice.probability(None, emitter));
             self.starts.push(LightStart { at: Origin::Whole, forward, ratio: 0.0 });
             let (kind, scale) = (LightKind::Delta { emitter }, V::Spectrum::splat(weight));
-            self.push(
-                scene,
-                VirtualPointLight { kind, scale, length: 0, pdf_solid_angle: 0.0, after_specular: false },
-                forward,
-            );
+            self.push(scene, VirtualPointLight::start(kind, scale), forward);
         }
     }
 }

@@ -9,8 +9,8 @@ use scene_core::{Scene, Spectrum, Vertex};
 
 pub use lanes::geometry_term;
 pub(crate) use lanes::{LANES, Lanes};
+pub(crate) use trace::{Edges, Start, light_of_start, light_of_vertex};
 pub use trace::{LightTracing, photon_cloud};
-pub(crate) use trace::{Start, light_of_start, light_of_vertex};
 pub(crate) use vertex::Towards;
 pub use vertex::{LightKind, VirtualPointLight};
 
@@ -36,6 +36,7 @@ pub struct VirtualPointLights<V: Vertex> {
     remote: Vec<u32>,
     paths: u32,
     all_lambertian: bool,
+    any_last_chance: bool,
     longest: u32,
 }
 
@@ -50,6 +51,7 @@ impl<V: Vertex> VirtualPointLights<V> {
             remote: Vec::new(),
             paths,
             all_lambertian: true,
+            any_last_chance: false,
             longest: 0,
         }
     }
@@ -61,7 +63,7 @@ impl<V: Vertex> VirtualPointLights<V> {
         self.is_lambertian.clear();
         self.lights.clear();
         self.remote.clear();
-        (self.paths, self.all_lambertian, self.longest) = (paths, true, 0);
+        (self.paths, self.all_lambertian, self.any_last_chance, self.longest) = (paths, true, false, 0);
     }
 
     /// Adds a light. Those that connections cannot reach (specular vertices) are kept, and never connected to.
@@ -81,6 +83,7 @@ impl<V: Vertex> VirtualPointLights<V> {
             Some(_) => {}
             None => self.remote.push(index as u32),
         }
+        self.any_last_chance |= light.is_last_chance;
         self.longest = self.longest.max(light.length);
         self.is_lambertian.push(lambertian.is_some());
         self.intensities.push(lambertian.map_or(V::Spectrum::ZERO, |(intensity, _)| intensity));
@@ -116,6 +119,12 @@ impl<V: Vertex> VirtualPointLights<V> {
     #[inline]
     pub(crate) fn all_lambertian(&self) -> bool {
         self.all_lambertian
+    }
+
+    /// Whether connections must take all of any light's edge.
+    #[inline]
+    pub(crate) fn any_last_chance(&self) -> bool {
+        self.any_last_chance
     }
 
     #[inline]

@@ -84,7 +84,7 @@ pub(crate) fn light_of_start<'s, S: Scene>(
         (LightKind::Emission { emitter, point: emission.point }, emission.pdf_area)
     };
     let scale = S::Spectrum::splat(1.0 / (start.probability * pdf * paths as f32));
-    VirtualPointLight { kind, scale, length: 0, pdf_solid_angle: 0.0, after_specular: false }
+    VirtualPointLight::start(kind, scale)
 }
 
 /// The virtual point light at a vertex of a walk, of `paths`.
@@ -95,6 +95,7 @@ pub(crate) fn light_of_vertex<V: Vertex>(walk: &WalkVertex<'_, V, V::Spectrum>, 
         length: walk.length,
         pdf_solid_angle: walk.pdf_solid_angle,
         after_specular: walk.after_specular,
+        is_last_chance: false,
     }
 }
 
@@ -140,13 +141,15 @@ impl<V: Vertex> VirtualPointLights<V> {
             let mut sampler = sampler(path);
             let Some(start) = tracing.emit(scene, &mut sampler) else { continue };
             let light = light_of_start(scene, &start, paths);
+            let mut edges = Edges::new(matches!(light.kind, LightKind::Delta { .. }));
             match light.kind {
                 LightKind::Delta { emitter } => deltas.add(emitter, start.probability),
                 _ => lights.push(scene, light),
             }
             tracing.follow(scene, &start, &mut sampler, |walk| {
+                let is_last_chance = edges.step(walk.length, walk.after_specular);
                 if walk.vertex.is_connectible() {
-                    lights.push(scene, light_of_vertex(&walk, paths));
+                    lights.push(scene, VirtualPointLight { is_last_chance, ..light_of_vertex(&walk, paths) });
                 }
                 ControlFlow::Continue(())
             });
@@ -154,9 +157,31 @@ impl<V: Vertex> VirtualPointLights<V> {
         for (emitter, weight) in deltas.finish() {
             let scale = V::Spectrum::splat(weight);
             let kind = LightKind::Delta { emitter };
-            lights
-                .push(scene, VirtualPointLight { kind, scale, length: 0, pdf_solid_angle: 0.0, after_specular: false });
+            lights.push(scene, VirtualPointLight::start(kind, scale));
         }
+    }
+}
+
+/// Looks along a light path from a Dirac emitter for a segment that a connection could replace.
+pub(crate) struct Edges {
+    from_delta: bool,
+    found: bool,
+    /// Whether the vertex before the last scattered without a Dirac delta.
+    smooth_before: bool,
+}
+
+impl Edges {
+    pub(crate) fn new(from_delta: bool) -> Self {
+        Self { from_delta, found: false, smooth_before: false }
+    }
+
+    /// At vertex number `length`; whether it is the last chance to connect.
+    pub(crate) fn step(&mut self, length: u32, after_specular: bool) -> bool {
+        // A Dirac emitter itself can be connected to.
+        let smooth = length == 1 || !after_specular;
+        self.found |= self.smooth_before && smooth;
+        self.smooth_before = smooth;
+        self.from_delta && !self.found && !smooth
     }
 }
 
@@ -217,8 +242,7 @@ where
     for (vertex, flux, length) in photons {
         if vertex.is_connectible() {
             let (kind, scale) = (LightKind::Surface(vertex), flux * (1.0 / paths as f32));
-            let light = VirtualPointLight { kind, scale, length, pdf_solid_angle: 0.0, after_specular: false };
-            lights.push(scene, light);
+            lights.push(scene, VirtualPointLight { length, ..VirtualPointLight::start(kind, scale) });
         }
     }
     lights.paths = paths;

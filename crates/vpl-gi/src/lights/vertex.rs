@@ -44,6 +44,10 @@ pub struct VirtualPointLight<V: Vertex> {
     pub pdf_solid_angle: f32,
     /// Whether the light path came here by a Dirac delta.
     pub after_specular: bool,
+    /// Whether no eye path that goes on to this vertex finds the light path's light any more: it starts at a Dirac emitter, which no ray
+    /// hits, and a Dirac delta is at an end of each of its segments, so that no connection could be made further on. Then connections
+    /// take all, whatever the geometry term.
+    pub is_last_chance: bool,
 }
 
 /// Where a connection leads from the lit point, and how it spreads.
@@ -65,6 +69,11 @@ impl Towards {
 }
 
 impl<V: Vertex> VirtualPointLight<V> {
+    /// A light where a light path starts.
+    pub fn start(kind: LightKind<V>, scale: V::Spectrum) -> Self {
+        Self { kind, scale, length: 0, pdf_solid_angle: 0.0, after_specular: false, is_last_chance: false }
+    }
+
     /// Where it is, unless it is a Dirac emitter or at infinity.
     #[inline]
     pub fn point(&self) -> Option<&SurfacePoint> {

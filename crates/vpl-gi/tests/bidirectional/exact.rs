@@ -282,9 +282,15 @@ fn no_light_paths() {
 /// same light paths, the radiance along every ray is the same.
 #[test]
 fn stratified_is_robust_instant_global_illumination() {
-    for scene in
-        [scenes::diffuse(), scenes::glossy(), scenes::glass_ball(), scenes::environment(), scenes::delta_lights()]
-    {
+    for scene in [
+        scenes::diffuse(),
+        scenes::glossy(),
+        scenes::glass_ball(),
+        scenes::environment(),
+        scenes::delta_lights(),
+        scenes::delta_caustics(),
+        scenes::mirrored_spot(),
+    ] {
         let threshold = 3.0 / scene.bounding_sphere().1.powi(2);
         for partition in [Partition::hard(threshold), Partition::soft(threshold), Partition::distance(threshold)] {
             let partition = partition.unwrap();
