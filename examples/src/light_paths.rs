@@ -63,6 +63,10 @@ pub struct LightPathSettings {
     /// Final gathering with this number of rays; 0 is none.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
     pub gather: u32,
+    /// Threshold the geometry term alone, as the paper does: glossy surfaces then show bright spots. Otherwise the peaks of
+    /// scattering functions count as well.
+    #[arg(long)]
+    pub geometry_alone: bool,
     /// Do not connect light paths to the lens (bdpt): the techniques of Kollig and Keller 2004.
     #[arg(long)]
     pub without_lens: bool,
@@ -87,6 +91,7 @@ impl Default for LightPathSettings {
             interleave: Interleaved::new(3, 3).ok(),
             shadow_rays: ShadowRays::All,
             gather: 0,
+            geometry_alone: false,
             without_lens: false,
             discontinuity_buffer: false,
         }
@@ -160,7 +165,13 @@ impl LightPathSettings {
         let default = if residual == Residual::Drop { f32::INFINITY } else { DEFAULT_THRESHOLD };
         let gathering = (self.gather > 0).then_some(FinalGathering { rays: self.gather });
         let shadow_rays = self.shadow_rays;
-        Ok(RobustIgi { residual, shadow_rays, gathering, ..RobustIgi::new(self.partition_or(scene, default)?) })
+        Ok(RobustIgi {
+            residual,
+            shadow_rays,
+            gathering,
+            peaks: !self.geometry_alone,
+            ..RobustIgi::new(self.partition_or(scene, default)?)
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use mis_heuristics::{Balance, Densities, Heuristic};
 use qmc_sampling::{Sampler, SamplerFamily};
 use scene_core::glam::Vec3A;
 use scene_core::{
-    ChosenEmitter, EmitterChoice, EmitterId, Ray, ScatterSample, Scene, SurfacePoint, TransportMode, Vertex,
+    ChosenEmitter, EmitterChoice, EmitterId, Ray, ScatterSample, Scene, Sharpness, SurfacePoint, TransportMode, Vertex,
 };
 
 /// A scene whose vertices scatter importance as if it were radiance: light paths know neither the correction for
@@ -219,11 +219,11 @@ impl<S: Sampler> Sampler for FewDimensionsSampler<S> {
     }
 }
 
-/// A scene that claims to have no specular surfaces.
+/// A scene that claims to be diffuse.
 #[derive(Clone, Debug)]
-pub struct NothingSpecular<S>(pub S);
+pub struct AllDiffuse<S>(pub S);
 
-impl<S: Scene> Scene for NothingSpecular<S> {
+impl<S: Scene> Scene for AllDiffuse<S> {
     type Spectrum = S::Spectrum;
     type Vertex<'s>
         = S::Vertex<'s>
@@ -256,7 +256,7 @@ impl<S: Scene> Scene for NothingSpecular<S> {
         self.0.bounding_sphere()
     }
 
-    fn has_specular_surfaces(&self) -> bool {
-        false
+    fn sharpness(&self) -> Sharpness {
+        Sharpness::Diffuse
     }
 }

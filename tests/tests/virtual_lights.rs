@@ -9,7 +9,7 @@ use estimator_checks::{BatchMeans, Suite};
 use lichtwerk::light_paths::{LightPathSettings, PartitionName};
 use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
 use lichtwerk::render::{Budget, Rendering};
-use lichtwerk_tests::planted::NothingSpecular;
+use lichtwerk_tests::planted::AllDiffuse;
 use lichtwerk_tests::{Effort, assets, block_means, scenes};
 use qmc_sampling::Interleaved;
 use scene_core::builtin::Builtin;
@@ -146,6 +146,7 @@ fn variants_equal_path() {
     truth.equals("one shadow ray", &with(|l| l.shadow_rays = ShadowRays::Sampled { count: 1 }));
     truth.equals("ordered", &with(|l| l.shadow_rays = ShadowRays::Ordered { tolerance: 0.2, remainder: 1 }));
     truth.equals("ordered, all", &with(|l| l.shadow_rays = ShadowRays::Ordered { tolerance: 0.0, remainder: 1 }));
+    truth.equals("geometry term alone", &with(|l| l.geometry_alone = true));
     truth.equals("final gathering", &with(|l| l.gather = 3));
 }
 
@@ -169,7 +170,7 @@ fn planted_bugs_are_rejected() {
     let truth = Truth::new("planted in glass", scenes::build(scenes::glass_ball()), Effort::QUICK);
     let settings = robust(1000.0, PartitionName::Hard, true);
     let wrong =
-        block_means("rays too short", &NothingSpecular(scenes::build(scenes::glass_ball())), &settings, truth.effort);
+        block_means("rays too short", &AllDiffuse(scenes::build(scenes::glass_ball())), &settings, truth.effort);
     println!("{}", truth.path.agrees_with(SUITE.twin("rays too short"), &wrong).expect_reject());
 }
 

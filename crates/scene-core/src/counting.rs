@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign};
 use glam::Vec3A;
 
 use crate::ray::Ray;
-use crate::traits::{EmitterId, Scene};
+use crate::traits::{EmitterId, Scene, Sharpness};
 
 /// Numbers of rays traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl<'a, S: Scene> Scene for Counting<'a, S> {
         self.scene.bounding_sphere()
     }
 
-    fn has_specular_surfaces(&self) -> bool {
-        self.scene.has_specular_surfaces()
+    fn sharpness(&self) -> Sharpness {
+        self.scene.sharpness()
     }
 }

@@ -164,9 +164,28 @@ impl Partition {
     }
 }
 
+/// How much more than a diffuse surface's the density is with which a surface scatters in a direction: `max(1, pi p / |cos|)`.
+///
+/// **Symbols.** `p`: density by solid angle; `cos`: with the geometric normal.
+#[inline]
+pub(crate) fn peak(pdf_solid_angle: f32, cos: f32) -> f32 {
+    let ratio = core::f32::consts::PI * pdf_solid_angle / cos.abs();
+    // NaN is none.
+    if ratio > 1.0 { ratio } else { 1.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn diffuse_surfaces_have_no_peak() {
+        for cos in [1.0, 0.3, 1e-4] {
+            assert!((peak(cos / core::f32::consts::PI, cos) - 1.0).abs() < 1e-6);
+        }
+        assert_eq!((peak(0.0, 0.0), peak(0.0, 1.0), peak(f32::NAN, 1.0)), (1.0, 1.0, 1.0));
+        assert!(peak(10.0, -0.5) > 60.0);
+    }
 
     fn all(t: f32) -> [Partition; 4] {
         [Partition::hard(t), Partition::soft(t), Partition::balance(t), Partition::distance(t)].map(Result::unwrap)

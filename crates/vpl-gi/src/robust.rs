@@ -1,12 +1,16 @@
 //! Robust instant global illumination.
 
+use glam::Vec3A;
 use qmc_sampling::Sampler;
-use scene_core::{Ray, RussianRoulette, Scene, Spectrum, SurfacePoint, TransportMode, Vertex};
+use scene_core::{
+    Ray, RussianRoulette, ScatterSample, Scene, Sharpness, Spectrum, SurfacePoint, TransportMode, Vertex,
+};
 
 use crate::caustics::CausticMap;
 use crate::lights::{VirtualPointLights, geometry_term};
 use crate::observer::Observer;
-use crate::partition::Partition;
+use crate::partition::{Partition, peak};
+use crate::shading::Connections;
 use crate::shadow_rays::{Shading, ShadowRays};
 
 /// What becomes of the part of an edge that connections do not take.
@@ -51,7 +55,7 @@ pub struct FinalGathering {
 /// estimation, infinity instant radiosity.
 ///
 /// **Cost.** Per eye vertex one shading loop over the lights and their shadow rays. Scattered rays end at `sqrt(|cos| / t)` where
-/// [`Partition::reach`] bounds them: in scenes without specular surfaces, or with a caustic map.
+/// [`Partition::reach`] bounds them: in scenes without specular surfaces (and without glossy ones, if peaks count), or with a caustic map.
 ///
 /// **Source.** P0, sections 2 and 3.2. The weight of the technique with `i` light vertices and `l` segments is
 /// `w(l,i) = s(x_(l-i), x_(l-i+1)) prod_(k<l-i) (1 - s(x_k, x_(k+1)))`, `k` from 1, and `w(l,0) = prod_(k<l) (1 - s)`, which the print
@@ -70,6 +74,14 @@ pub struct RobustIgi {
     pub shadow_rays: ShadowRays,
     /// Final gathering, if wanted.
     pub gathering: Option<FinalGathering>,
+    /// Whether the peaks of scattering functions count as if they were part of the geometry term:
+    /// ```text
+    /// s(x_k, x_(k+1)) of  G a b,    a = max(1, pi p(x_k -> x_(k+1)) / |cos_k|),    b = max(1, pi p*(x_(k+1) -> x_k) / |cos_(k+1)|)
+    /// ```
+    /// with the densities `p` and `p*` of scattering on eye and light paths, and cosines with shading normals. P0 looks at `G` alone, which
+    /// bounds contributions if surfaces are diffuse (`a = b = 1` then). Where they are glossy, a light that lies in the
+    /// direction of a mirror is as bright as one that is too close.
+    pub peaks: bool,
 }
 
 impl RobustIgi {
@@ -82,6 +94,7 @@ impl RobustIgi {
             roulette: RussianRoulette::PathThroughput { from_length: 4 },
             shadow_rays: ShadowRays::All,
             gathering: None,
+            peaks: true,
         }
     }
 
@@ -118,7 +131,13 @@ impl RobustIgi {
         V: Vertex<Spectrum = S::Spectrum>,
         O: Observer<S::Vertex<'s>>,
     {
-        let rays_may_end = caustics.is_some() || !scene.has_specular_surfaces();
+        // With a caustic map nothing specular is looked for.
+        let sharpness = if caustics.is_some() { scene.sharpness().min(Sharpness::Glossy) } else { scene.sharpness() };
+        let rays_may_end = match sharpness {
+            Sharpness::Diffuse => true,
+            Sharpness::Glossy => !self.peaks,
+            Sharpness::Specular => false,
+        };
         let walk = Walk { settings: self, scene, lights, caustics, rays_may_end };
         let start = EyeRay {
             ray,
@@ -160,18 +179,42 @@ struct EyeRay<S> {
 
 struct Edge {
     from: SurfacePoint,
+    /// How much `from` peaks towards the next vertex.
+    peak: f32,
     /// Whether connections at `from` were made to emission points only.
     gathered: bool,
 }
 
 /// What is left at a vertex, by what the path does there.
+#[derive(Clone, Copy)]
 struct Left {
     /// The path ends: the vertex emits.
     emission: f32,
-    /// It is connected or scatters without a Dirac delta.
+    /// It is connected or scatters without a Dirac delta, in a direction without a peak.
     smooth: f32,
     /// It scatters by a Dirac delta.
     specular: f32,
+    /// If peaks count and the vertex is not diffuse: what the edge is, so that more is left in directions of a peak.
+    term: Option<Term>,
+    /// One over the number of paths that go on from here.
+    part: f32,
+}
+
+/// An edge whose share depends on where the path goes on.
+#[derive(Clone, Copy)]
+struct Term {
+    /// Product of `1 - s` over the edges before.
+    before: f32,
+    /// Geometry term, times the peak at the vertex before.
+    g: f32,
+    d2: f32,
+}
+
+impl Left {
+    /// Whether anything may be left for a direction without a Dirac delta.
+    fn is_any_smooth(&self) -> bool {
+        self.smooth > 0.0 || self.term.is_some_and(|term| term.before > 0.0)
+    }
 }
 
 impl<'s, S, V> Walk<'_, 's, S, V>
@@ -197,7 +240,7 @@ where
                 return radiance;
             };
             observer.vertex(eye.length, &vertex);
-            let left = self.left_at(&eye, vertex.point());
+            let left = self.left_at(&eye, &vertex);
 
             // Emission, on direct hits.
             if left.emission > 0.0 && vertex.emitter().is_some() {
@@ -213,14 +256,14 @@ where
 
             // 2a: connect.
             let gathers = eye.gathers && vertex.is_connectible();
-            if left.smooth > 0.0 && vertex.is_connectible() {
-                let value = eye.throughput * self.connect(&vertex, eye.length, gathers, sampler) * left.smooth;
+            if left.is_any_smooth() && vertex.is_connectible() {
+                let value = eye.throughput * self.connect(&vertex, &left, eye.length, gathers, sampler);
                 observer.contribution(eye.length, Some(0), value);
                 radiance += value;
             }
 
             // 2b: scatter.
-            if left.smooth <= 0.0 && left.specular <= 0.0 {
+            if !left.is_any_smooth() && left.specular <= 0.0 {
                 return radiance;
             }
             if gathers {
@@ -234,21 +277,35 @@ where
     }
 
     /// Shares of the edge that the eye path came along.
-    fn left_at(&self, eye: &EyeRay<S::Spectrum>, at: &SurfacePoint) -> Left {
+    fn left_at(&self, eye: &EyeRay<S::Spectrum>, vertex: &S::Vertex<'s>) -> Left {
         let Some(edge) = &eye.edge else {
-            return Left { emission: eye.left, smooth: eye.left, specular: eye.left };
+            return Left { emission: eye.left, smooth: eye.left, specular: eye.left, term: None, part: 1.0 };
         };
-        let g = geometry_term(edge.from.position, edge.from.normal, at.position, at.normal);
-        let share = self.settings.partition.share_with(g, || edge.from.position.distance_squared(at.position));
+        let at = vertex.point();
+        let g = edge.peak * geometry_term(edge.from.position, edge.from.normal, at.position, at.normal);
+        let d2 = edge.from.position.distance_squared(at.position);
         let rest = match self.settings.residual {
-            Residual::Scatter => eye.left * (1.0 - share),
+            Residual::Scatter => eye.left * (1.0 - self.settings.partition.share(g, d2)),
             Residual::Drop => 0.0,
         };
+        let depends = self.settings.peaks && self.settings.residual == Residual::Scatter && !edge.gathered;
+        let term = (depends && vertex.lambertian().is_none()).then_some(Term { before: eye.left, g, d2 });
         Left {
             emission: rest,
             smooth: if edge.gathered { eye.left } else { rest },
             specular: if self.caustics.is_some() { 0.0 } else { eye.left },
+            term,
+            part: 1.0,
         }
+    }
+
+    /// What is left for going on from `vertex` in the direction `wi`, without a Dirac delta. The light path that would have come
+    /// that way has a peak at `vertex`, too.
+    fn left_towards(&self, left: &Left, vertex: &S::Vertex<'s>, wi: Vec3A) -> f32 {
+        let Some(term) = left.term else { return left.smooth };
+        let pdf = vertex.reversed(wi).pdf_solid_angle(vertex.wo(), TransportMode::Importance);
+        let g = term.g * peak(pdf, vertex.shading_normal().dot(vertex.wo()));
+        term.before * (1.0 - self.settings.partition.share(g, term.d2))
     }
 
     fn left_at_infinity(&self, eye: &EyeRay<S::Spectrum>) -> f32 {
@@ -260,12 +317,29 @@ where
     }
 
     /// What the virtual point lights and the caustic map contribute at eye vertex number `length`, before attenuation.
-    fn connect(&self, vertex: &S::Vertex<'s>, length: u32, gathers: bool, sampler: &mut impl Sampler) -> S::Spectrum {
+    fn connect(
+        &self,
+        vertex: &S::Vertex<'s>,
+        left: &Left,
+        length: u32,
+        gathers: bool,
+        sampler: &mut impl Sampler,
+    ) -> S::Spectrum {
         let longest = if gathers { 0 } else { self.settings.max_depth - length - 1 };
-        let (scene, lights, partition) = (self.scene, self.lights, &self.settings.partition);
-        let shading = Shading { scene, x: vertex, lights, partition, longest };
-        let reflected = shading.radiance(self.settings.shadow_rays, sampler);
-        self.caustics.map_or(reflected, |caustics| reflected + caustics.radiance(vertex))
+        let (scene, lights, settings) = (self.scene, self.lights, self.settings);
+        let towards = |wi: Vec3A| self.left_towards(left, vertex, wi);
+        let connections = Connections {
+            partition: &settings.partition,
+            longest,
+            peaks: settings.peaks,
+            left: left.term.is_some().then_some(&towards),
+        };
+        let shading = Shading { scene, x: vertex, lights, connections };
+        let mut reflected = shading.radiance(settings.shadow_rays, sampler);
+        if left.term.is_none() {
+            reflected *= S::Spectrum::splat(left.smooth);
+        }
+        self.caustics.map_or(reflected, |caustics| reflected + caustics.radiance(vertex) * left.smooth)
     }
 
     /// Goes on in several directions.
@@ -278,8 +352,7 @@ where
         observer: &mut O,
     ) -> S::Spectrum {
         let rays = self.settings.gathering.map_or(1, |gathering| gathering.rays.max(1));
-        let part = |left: f32| left / rays as f32;
-        let left = Left { emission: part(left.emission), smooth: part(left.smooth), specular: part(left.specular) };
+        let left = Left { part: 1.0 / rays as f32, ..*left };
         let mut radiance = S::Spectrum::ZERO;
         for ray in 0..rays {
             let mut child = sampler.fork(GATHER_DOMAIN ^ ray);
@@ -288,6 +361,11 @@ where
             }
         }
         radiance
+    }
+
+    /// How much `vertex` peaks in the direction that was sampled, if that counts.
+    fn peak_of(&self, vertex: &S::Vertex<'s>, sample: &ScatterSample<S::Spectrum>) -> f32 {
+        if self.settings.peaks { peak(sample.pdf_solid_angle, vertex.shading_normal().dot(sample.wi)) } else { 1.0 }
     }
 
     /// The way to the next vertex; nothing if the path ends here.
@@ -303,14 +381,19 @@ where
         let sample = vertex.sample([lobe, u, v], TransportMode::Radiance)?;
         let mut throughput = eye.throughput * sample.throughput;
         let eta = eye.eta * sample.eta;
-        let left = if sample.is_specular { left.specular } else { left.smooth };
+        let left =
+            if sample.is_specular { left.specular } else { self.left_towards(left, vertex, sample.wi) } * left.part;
         if left <= 0.0 || throughput.is_black() {
             return None;
         }
 
         // Where the next vertex may lie.
         let mut ray = vertex.spawn_ray(sample.wi);
-        let edge = (!sample.is_specular).then(|| Edge { from: *vertex.point(), gathered });
+        let edge = (!sample.is_specular).then(|| Edge {
+            from: *vertex.point(),
+            peak: self.peak_of(vertex, &sample),
+            gathered,
+        });
         if let Some(edge) = &edge
             && self.rays_may_end
             && !gathered

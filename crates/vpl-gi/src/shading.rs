@@ -1,34 +1,54 @@
 //! The shading loop: one lit vertex, all virtual point lights.
 
+use glam::Vec3A;
 use scene_core::{Emitter, Ray, Scene, Spectrum, TransportMode, Vertex};
 
 use crate::lights::{LANES, LightKind, Towards, VirtualPointLights, facing_normal};
-use crate::partition::Partition;
+use crate::partition::{Partition, peak};
+
+/// What connections at a vertex take, apart from the lights.
+#[derive(Clone, Copy)]
+pub(crate) struct Connections<'a> {
+    /// The share of edges.
+    pub(crate) partition: &'a Partition,
+    /// Longest light paths that count, in segments.
+    pub(crate) longest: u32,
+    /// Whether the peaks of scattering functions count as if they were part of the geometry term.
+    pub(crate) peaks: bool,
+    /// What is left for connections in a direction, if it depends on it.
+    pub(crate) left: Option<&'a dyn Fn(Vec3A) -> f32>,
+}
+
+impl<'a> Connections<'a> {
+    /// All light paths, by the geometry term alone.
+    pub(crate) fn all(partition: &'a Partition) -> Self {
+        Self { partition, longest: u32::MAX, peaks: false, left: None }
+    }
+}
 
 /// Calls `with(light, value)` for every light that contributes at `x` if nothing is in between:
 /// ```text
 /// value = s(x, y_j) f_x G(x, y_j) I_j
 /// ```
-/// Light paths of more than `longest` segments are left out. Geometry terms come first, for [`LANES`] lights at once; BSDFs are
-/// evaluated for those that are left.
+/// Geometry terms come first, for [`LANES`] lights at once; BSDFs are evaluated for those that are left.
 #[inline]
 pub(crate) fn for_each_unshadowed<S, X, V>(
     scene: &S,
     x: &X,
     lights: &VirtualPointLights<V>,
-    partition: &Partition,
-    longest: u32,
+    connections: &Connections<'_>,
     mut with: impl FnMut(usize, V::Spectrum),
 ) where
     S: Scene<Spectrum = V::Spectrum>,
     X: Vertex<Spectrum = V::Spectrum>,
     V: Vertex,
 {
+    let &Connections { partition, longest, peaks, left } = connections;
     let all = lights.as_slice();
     let is_too_long = |index: usize| longest < lights.longest() && all[index].length > longest;
     let is_last_chance = |index: usize| lights.any_last_chance() && all[index].is_last_chance;
     let (from, normal) = (x.point().position, facing_normal(x));
-    let diffuse = if lights.all_lambertian() { x.lambertian() } else { None };
+    let diffuse = if lights.all_lambertian() && left.is_none() { x.lambertian() } else { None };
     for (block, lanes) in lights.lanes().iter().enumerate() {
         if let Some(f) = diffuse {
             let terms = lanes.geometry_terms::<true>(from, normal);
@@ -49,14 +69,23 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
             let light = &all[index];
             let Some(y) = light.point() else { continue };
             let towards = Towards::new(from, y.position);
-            let share = if is_last_chance(index) { 1.0 } else { partition.share(g, towards.d2) };
+            // Peaks only make the share smaller.
+            let mut share = if is_last_chance(index) { 1.0 } else { partition.share(g, towards.d2) };
             if share <= 0.0 || is_too_long(index) {
                 continue;
             }
-            let scattered = x.eval(towards.wi, TransportMode::Radiance);
-            if scattered.is_black() {
+            let scattered = if peaks && !is_last_chance(index) {
+                let (scattered, pdf) = x.eval_pdf(towards.wi, TransportMode::Radiance);
+                let peaks = peak(pdf, x.shading_normal().dot(towards.wi)) * lights.peak(index, towards.wi);
+                share = partition.share(g * peaks, towards.d2);
+                scattered
+            } else {
+                x.eval(towards.wi, TransportMode::Radiance)
+            };
+            if scattered.is_black() || share <= 0.0 {
                 continue;
             }
+            let share = share * left.map_or(1.0, |left| left(towards.wi));
             let value = scattered * lights.intensity(scene, index, towards.wi) * (share / towards.d2);
             if !value.is_black() {
                 with(index, value);
@@ -66,7 +95,7 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
     for &index in lights.remote() {
         let index = index as usize;
         if !is_too_long(index)
-            && let Some(value) = remote(scene, x, lights, partition, index)
+            && let Some(value) = remote(scene, x, lights, connections, index)
         {
             with(index, value);
         }
@@ -78,7 +107,7 @@ fn remote<S, X, V>(
     scene: &S,
     x: &X,
     lights: &VirtualPointLights<V>,
-    partition: &Partition,
+    connections: &Connections<'_>,
     index: usize,
 ) -> Option<V::Spectrum>
 where
@@ -95,11 +124,12 @@ where
         }
         LightKind::Distant { emitter, towards } => {
             let radiance = scene.emitters()[emitter.index()].radiance(None, towards);
-            (towards, radiance * partition.share_at_infinity())
+            (towards, radiance * connections.partition.share_at_infinity())
         }
         LightKind::Emission { .. } | LightKind::Surface(_) => return None,
     };
-    let value = x.eval(wi, TransportMode::Radiance) * radiance * light.scale;
+    let left = connections.left.map_or(1.0, |left| left(wi));
+    let value = x.eval(wi, TransportMode::Radiance) * radiance * light.scale * left;
     (!value.is_black()).then_some(value)
 }
 
@@ -153,10 +183,11 @@ where
             }
             sum *= f;
             for &index in lights.remote() {
-                sum += remote(scene, x, lights, partition, index as usize).unwrap_or(V::Spectrum::ZERO);
+                sum +=
+                    remote(scene, x, lights, &Connections::all(partition), index as usize).unwrap_or(V::Spectrum::ZERO);
             }
         }
-        _ => for_each_unshadowed(scene, x, lights, partition, u32::MAX, |_, value| sum += value),
+        _ => for_each_unshadowed(scene, x, lights, &Connections::all(partition), |_, value| sum += value),
     }
     sum
 }

@@ -4,8 +4,7 @@ use qmc_sampling::Sampler;
 use scene_core::{Scene, Spectrum, Vertex};
 
 use crate::lights::VirtualPointLights;
-use crate::partition::Partition;
-use crate::shading::{for_each_unshadowed, shadow_ray};
+use crate::shading::{Connections, for_each_unshadowed, shadow_ray};
 
 /// Which of the lights that contribute get a shadow ray.
 ///
@@ -75,9 +74,7 @@ pub(crate) struct Shading<'a, S, X, V: Vertex> {
     pub(crate) scene: &'a S,
     pub(crate) x: &'a X,
     pub(crate) lights: &'a VirtualPointLights<V>,
-    pub(crate) partition: &'a Partition,
-    /// Longest light paths that count.
-    pub(crate) longest: u32,
+    pub(crate) connections: Connections<'a>,
 }
 
 impl<S, X, V> Shading<'_, S, X, V>
@@ -91,7 +88,7 @@ where
     }
 
     fn for_each(&self, with: impl FnMut(usize, V::Spectrum)) {
-        for_each_unshadowed(self.scene, self.x, self.lights, self.partition, self.longest, with);
+        for_each_unshadowed(self.scene, self.x, self.lights, &self.connections, with);
     }
 
     /// The radiance that is reflected.

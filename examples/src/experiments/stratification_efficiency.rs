@@ -52,7 +52,7 @@ impl Candidate {
 /// squared error times cost, which does not depend on the number of samples; cost is counted in rays, and in seconds.
 pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
     let mut report = context.report();
-    let size = context.effort([40, 30], [160, 120]);
+    let size = context.effort([40, 30], [96, 72]);
     let mut setups = Vec::new();
     for name in ["office", "conference"] {
         setups.push(Setup::builtin(context, name, size)?);
@@ -78,7 +78,7 @@ pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
 
 /// In units of 1/R^2.
 fn thresholds(context: &Context) -> &'static [f32] {
-    context.effort(&[3.0, 10.0, 30.0, 100.0], &[1.0, 3.0, 10.0, 20.0, 40.0, 80.0, 160.0, 640.0])
+    context.effort(&[10.0, 30.0, 100.0, 300.0, 1000.0], &[3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0])
 }
 
 fn light_paths(context: &Context, interleaved: bool, threshold: f32) -> Result<LightPathSettings, Failure> {
@@ -99,8 +99,8 @@ fn robust(context: &Context, setup: &Setup, interleaved: bool, threshold: f32) -
 
 /// By robust instant global illumination, of which the tests show that it is unbiased: path tracing needs longer.
 fn reference(context: &Context, setup: &Setup) -> Result<LayeredImage, Failure> {
-    let settings = robust(context, setup, true, 30.0)?;
-    let rendering = setup.render(&settings, context.effort(192, 1024), context.seed_of("reference", 0))?;
+    let settings = robust(context, setup, true, 100.0)?;
+    let rendering = setup.render(&settings, context.effort(192, 256), context.seed_of("reference", 0))?;
     Ok(rendering.film.develop(0))
 }
 
@@ -129,12 +129,12 @@ fn compare(
     candidates: &mut [Candidate],
     reference: &LayeredImage,
 ) -> Result<(), Failure> {
-    let trials = context.effort(12, 16);
+    let trials = 12;
     let progress = context.progress(trials * candidates.len() as u64);
     let is_cheap =
         |candidate: &Candidate| candidate.estimator == "path" || candidate.settings.light_paths.interleave.is_none();
     for candidate in candidates.iter_mut() {
-        let (cheap, dear) = context.effort((4, 1), (16, 4));
+        let (cheap, dear) = context.effort((4, 1), (16, 2));
         candidate.samples = if is_cheap(candidate) { cheap } else { dear };
     }
     for trial in 0..trials {
@@ -156,15 +156,15 @@ fn compare(
     Ok(())
 }
 
-fn best<'a>(
-    candidates: impl Iterator<Item = &'a Candidate>,
-    cost: fn(&Candidate) -> &Replications,
-) -> Option<&'a Candidate> {
+fn best<'a>(candidates: impl Iterator<Item = &'a Candidate>, cost: Cost) -> Option<&'a Candidate> {
     candidates.min_by(|a, b| cost(a).mean().total_cmp(&cost(b).mean()))
 }
 
+/// Error times cost, of each trial.
+type Cost = fn(&Candidate) -> &Replications;
+
 /// The two ways to count cost.
-const COSTS: [(&str, fn(&Candidate) -> &Replications); 2] =
+const COSTS: [(&str, Cost); 2] =
     [("rays", |candidate| &candidate.by_rays), ("seconds", |candidate| &candidate.by_seconds)];
 
 fn report_scene(setup: &Setup, interleaved: bool, candidates: &[Candidate], report: &mut Report) {

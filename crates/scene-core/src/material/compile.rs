@@ -15,7 +15,7 @@ use super::surface::Surface;
 use super::{Bsdf, Material, MaterialError};
 use crate::frame::Frame;
 use crate::texture::Texture;
-use crate::traits::{Rgb, Spectrum};
+use crate::traits::{Rgb, Sharpness, Spectrum};
 
 /// A material that is ready for rendering. See [`Material::compile`].
 #[derive(Clone, Debug)]
@@ -224,9 +224,15 @@ impl CompiledMaterial {
         self.front.is_connectible() || self.back.as_ref().is_some_and(Surface::is_connectible)
     }
 
-    /// Whether it has a component that is a Dirac delta (a mask passes light by one).
-    pub fn is_specular(&self) -> bool {
-        !self.opacity.is_empty() || self.front.is_specular() || self.back.as_ref().is_some_and(Surface::is_specular)
+    /// Of its sharpest component: a mask passes light by a Dirac delta, and what is evaluated only is sampled unlike it scatters.
+    pub fn sharpness(&self) -> Sharpness {
+        let wrapped = match (self.opacity.is_empty(), self.evaluate_only) {
+            (false, _) => Sharpness::Specular,
+            (true, true) => Sharpness::Glossy,
+            (true, false) => Sharpness::Diffuse,
+        };
+        let back = self.back.as_ref().map_or(Sharpness::Diffuse, Surface::sharpness);
+        wrapped.max(self.front.sharpness()).max(back)
     }
 
     /// The albedo for mean textures at an angle of 60 degrees, both sides averaged if they differ: an estimate.

@@ -10,7 +10,7 @@ use super::plastic::Plastic;
 use super::rough_plastic::RoughPlastic;
 use super::{BsdfSample, diffuse};
 use crate::texture::Texture;
-use crate::traits::{Rgb, TransportMode};
+use crate::traits::{Rgb, Sharpness, TransportMode};
 
 /// A material without its wrappers.
 #[derive(Clone, Debug)]
@@ -67,9 +67,19 @@ impl Surface {
         !matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_))
     }
 
-    /// Whether it has a component that is a Dirac delta.
-    pub(super) fn is_specular(&self) -> bool {
-        matches!(self, Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Plastic(_))
+    /// Of its sharpest component.
+    pub(super) fn sharpness(&self) -> Sharpness {
+        match self {
+            Self::Diffuse(_) => Sharpness::Diffuse,
+            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Plastic(_) => {
+                Sharpness::Specular
+            }
+            Self::RoughConductor(_)
+            | Self::RoughDielectric(_)
+            | Self::RoughPlastic(_)
+            | Self::Phong(_)
+            | Self::CookTorrance(_) => Sharpness::Glossy,
+        }
     }
 
     #[inline]

@@ -17,7 +17,7 @@ use super::light_checks::check_light;
 use super::vertex::SceneVertex;
 use crate::material::{CompiledMaterial, MaterialError};
 use crate::ray::Ray;
-use crate::traits::{EmitterId, Rgb, Scene};
+use crate::traits::{EmitterId, Rgb, Scene, Sharpness};
 
 /// Why a scene cannot be built.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -104,7 +104,7 @@ pub struct ReferenceScene {
     camera: PerspectiveCamera,
     bounding_sphere: (Vec3A, f32),
     triangles: u64,
-    has_specular_surfaces: bool,
+    sharpness: Sharpness,
     warnings: Vec<String>,
 }
 
@@ -139,7 +139,8 @@ impl ReferenceScene {
         for (index, material) in description.materials.into_iter().enumerate() {
             materials.push(material.compile().map_err(|error| SceneError::Material { index, error })?);
         }
-        let has_specular_surfaces = surfaces.iter().any(|surface| materials[surface.material as usize].is_specular());
+        let sharpness = surfaces.iter().map(|surface| materials[surface.material as usize].sharpness());
+        let sharpness = sharpness.max().unwrap_or(Sharpness::Diffuse);
         Ok(Self {
             name: description.name,
             world,
@@ -150,7 +151,7 @@ impl ReferenceScene {
             camera,
             bounding_sphere,
             triangles,
-            has_specular_surfaces,
+            sharpness,
             warnings,
         })
     }
@@ -210,8 +211,8 @@ impl Scene for ReferenceScene {
         self.bounding_sphere
     }
 
-    fn has_specular_surfaces(&self) -> bool {
-        self.has_specular_surfaces
+    fn sharpness(&self) -> Sharpness {
+        self.sharpness
     }
 }
 

@@ -5,6 +5,17 @@ use glam::Vec3A;
 use super::{Emitter, EmitterId, Sensor, Spectrum, Vertex};
 use crate::ray::{Ray, SurfacePoint};
 
+/// How sharply surfaces scatter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sharpness {
+    /// In proportion to the cosine with the shading normal, and so are directions sampled.
+    Diffuse,
+    /// More in some directions than in others.
+    Glossy,
+    /// By Dirac deltas, among others.
+    Specular,
+}
+
 /// Geometry that rays can be traced against, with its emitters and its sensor.
 ///
 /// All estimators of this project are written against this trait alone. Implementing it (with [`Vertex`],
@@ -47,10 +58,10 @@ pub trait Scene {
     /// length scale that scale-normalised parameters refer to).
     fn bounding_sphere(&self) -> (Vec3A, f32);
 
-    /// Whether any surface scatters by Dirac deltas. If it is known that none does, rays that are traced only for what
-    /// connections cannot reach may be short. True if unknown.
-    fn has_specular_surfaces(&self) -> bool {
-        true
+    /// The sharpest scattering among all surfaces. If it is not sharp, rays that are traced only for what connections
+    /// cannot reach may be short. [`Sharpness::Specular`] if unknown.
+    fn sharpness(&self) -> Sharpness {
+        Sharpness::Specular
     }
 
     /// Whether the open segment between two surface points is free.

@@ -13,7 +13,7 @@ use super::techniques::PathHeuristic;
 use crate::lights::LightKind;
 use crate::observer::Observer;
 use crate::partition::Partition;
-use crate::shading::{for_each_unshadowed, shadow_ray};
+use crate::shading::{Connections, for_each_unshadowed, shadow_ray};
 
 /// The vertices of an eye path; longer ones move to the heap.
 type EyeVertices = SmallVec<[EyeVertex; 8]>;
@@ -108,7 +108,8 @@ where
             if vertex.is_connectible() {
                 let longest = settings.max_depth - length - 1;
                 let lights = self.lights.lights();
-                for_each_unshadowed(self.scene, &vertex, lights, &everything, longest, |light, value| {
+                let connections = Connections { longest, ..Connections::all(&everything) };
+                for_each_unshadowed(self.scene, &vertex, lights, &connections, |light, value| {
                     radiance += self.connect(&vertex, light, throughput * value, observer);
                 });
             }

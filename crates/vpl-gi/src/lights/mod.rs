@@ -5,7 +5,9 @@ mod trace;
 mod vertex;
 
 use glam::Vec3A;
-use scene_core::{Scene, Spectrum, Vertex};
+use scene_core::{Scene, Spectrum, TransportMode, Vertex};
+
+use crate::partition::peak;
 
 pub use lanes::geometry_term;
 pub(crate) use lanes::{LANES, Lanes};
@@ -149,6 +151,17 @@ impl<V: Vertex> VirtualPointLights<V> {
             _ => light.point().map_or(Vec3A::ZERO, |point| point.normal),
         };
         self.intensities[index] * (-normal.dot(wi)).max(0.0)
+    }
+
+    /// How much a light that is no emitter peaks towards `-wi`: 1 for diffuse ones.
+    #[inline]
+    pub(crate) fn peak(&self, index: usize, wi: Vec3A) -> f32 {
+        match &self.lights[index].kind {
+            LightKind::Surface(vertex) if !self.is_lambertian[index] => {
+                peak(vertex.pdf_solid_angle(-wi, TransportMode::Importance), vertex.shading_normal().dot(wi))
+            }
+            _ => 1.0,
+        }
     }
 
     /// `I` of each light, zero for those that are not diffuse: as many as there are lights.

@@ -296,7 +296,7 @@ fn stratified_is_robust_instant_global_illumination() {
             let partition = partition.unwrap();
             let estimator = bidirectional(&scene, Stratified(partition), TechniqueSet::WithoutLens);
             let (max_depth, roulette) = (estimator.max_depth, estimator.roulette);
-            let robust = RobustIgi { max_depth, roulette, ..RobustIgi::new(partition) };
+            let robust = RobustIgi { max_depth, roulette, peaks: false, ..RobustIgi::new(partition) };
             let family = Independent::new(estimator_checks::seed("robust"));
             let mut lights = LightPaths::new(&scene);
             let mut lit = 0;
