@@ -12,7 +12,7 @@ use super::emitters::{
     AreaTables, DirectionalEmitter, DiskEmitter, EnvironmentEmitter, MeshEmitter, PointEmitter, ReferenceEmitter,
     SphereEmitter, SpotEmitter, similarity_scale,
 };
-use super::geometry::{Object, ObjectShape, TriangleBvh, TriangleMesh, World, WorldMesh};
+use super::geometry::{Object, ObjectShape, TriangleMesh, Triangles, World, WorldMesh};
 use super::light_checks::check_light;
 use super::vertex::SceneVertex;
 use crate::material::{CompiledMaterial, MaterialError};
@@ -242,7 +242,7 @@ struct Builder<'d> {
     description: &'d SceneDescription,
     warnings: &'d mut Vec<String>,
     uses: Vec<u32>,
-    hierarchies: HashMap<u32, Arc<TriangleBvh>>,
+    hierarchies: HashMap<u32, Arc<Triangles>>,
     areas: AreaTables,
     meshes: Vec<WorldMesh>,
     objects: Vec<Object>,
@@ -328,12 +328,9 @@ impl<'d> Builder<'d> {
             (moved, Affine3A::IDENTITY)
         } else {
             check_invertible(index, to_world)?;
-            let bvh = self.hierarchies.entry(shape).or_insert_with(|| {
-                let corners: Vec<_> = (0..mesh.len()).map(|i| mesh.corners(i)).collect();
-                Arc::new(TriangleBvh::new(&corners))
-            });
-            let object = ObjectShape::Mesh { mesh: mesh.clone(), bvh: bvh.clone() };
-            self.objects.push(Object::new(object, to_world, surface));
+            let triangles =
+                self.hierarchies.entry(shape).or_insert_with(|| Arc::new(Triangles::new([(&**mesh, 0)].into_iter())));
+            self.objects.push(Object::new(ObjectShape::Mesh(triangles.clone()), to_world, surface));
             (mesh.clone(), to_world)
         };
         self.triangles += placed.len() as u64;

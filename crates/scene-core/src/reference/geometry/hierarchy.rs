@@ -1,10 +1,11 @@
 //! A bounding volume hierarchy four boxes wide.
 //!
-//! obvhs builds a binary hierarchy (PLOC with reinsertion, Meister and Bittner 2018 and 2017); here pairs of its levels are
-//! collapsed into nodes of four boxes, stored axis by axis, so that one ray meets four boxes at once. obvhs' own compressed
-//! eight-wide nodes (CWBVH) are made for GPUs: with them, and triangles tested one edge after the other, a ray of the Cornell box took
-//! 910 instructions for the closest hit and 1,050 for any, against 610 and 470 now (callgrind). They also drop boxes left before
-//! t = 1e-4 whatever the unit of length, and overwrite stacks deeper than 32.
+//! obvhs builds a binary hierarchy (PLOC with reinsertion, Meister and Bittner 2018 and 2017); [`Collapse`] makes nodes of
+//! four boxes of it, stored axis by axis, so that one ray meets four boxes at once, and leaves of up to four primitives.
+//!
+//! Tried and found no faster, on the machine of `docs/performance.md`: eight boxes a node (in two vectors of four); and putting
+//! children on the stack without branches, in an order kept for each octant of directions. The latter is never mispredicted, but then
+//! the processor must wait for each node before it can start on the next.
 
 use core::ops::Range;
 use core::time::Duration;
@@ -16,27 +17,22 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 
+use super::collapse::{Collapse, LANES, WIDTH};
 use crate::ray::Ray;
 
-/// Nodes waiting at most.
+/// Children waiting at most.
 const STACK_SIZE: usize = 64;
-/// Primitives in a leaf at most.
-const MAX_LEAF: u32 = 4;
+/// Nodes above each other at most: each leaves all its children but one waiting.
+const MAX_DEPTH: usize = STACK_SIZE / (WIDTH - 1);
 /// `1 + 2 gamma_3`: makes the slab test conservative (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
 const FAR_FACTOR: f32 = 1.0 + 6.0 * f32::EPSILON;
 
-/// A child is an inner node, or a range of primitives if the highest bit is set: then come four bits for their number.
-#[derive(Clone, Copy, Debug)]
+/// A child is an inner node, or a pack of primitives if the highest bit is set.
+#[derive(Clone, Copy, Debug, Default)]
 struct Child(u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
-    const COUNT_SHIFT: u32 = 27;
-    const FIRST_MASK: u32 = (1 << Self::COUNT_SHIFT) - 1;
-
-    fn leaf(first: u32, count: u32) -> Self {
-        Self(Self::LEAF | count << Self::COUNT_SHIFT | first)
-    }
 
     #[inline(always)]
     fn is_leaf(self) -> bool {
@@ -44,29 +40,36 @@ impl Child {
     }
 
     #[inline(always)]
-    fn range(self) -> Range<usize> {
-        let first = (self.0 & Self::FIRST_MASK) as usize;
-        first..first + (self.0 >> Self::COUNT_SHIFT & 15) as usize
+    fn pack(self) -> usize {
+        (self.0 & !Self::LEAF) as usize
     }
 }
 
-/// Four boxes: for each axis the lower and the upper planes.
+/// Four boxes: for each axis the lower and the upper planes. Two cache lines.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 struct Node {
     planes: [[Vec4; 2]; 3],
-    children: [Child; 4],
+    children: [Child; WIDTH],
+    /// One bit for each child.
+    occupied: u32,
 }
 
 impl Node {
-    /// Boxes that no ray meets.
-    const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3], children: [Child(0); 4] };
+    /// A node without children.
+    const EMPTY: Self = Self { planes: [[Vec4::ZERO; 2]; 3], children: [Child(0); WIDTH], occupied: 0 };
 
-    fn set(&mut self, slot: usize, bounds: &Aabb, child: Child) {
-        for axis in 0..3 {
-            self.planes[axis][0][slot] = bounds.min[axis];
-            self.planes[axis][1][slot] = bounds.max[axis];
+    fn new(children: &[(Aabb, Child)]) -> Self {
+        let mut node = Self::EMPTY;
+        for (slot, (bounds, child)) in children.iter().enumerate() {
+            for axis in 0..3 {
+                node.planes[axis][0][slot] = bounds.min[axis];
+                node.planes[axis][1][slot] = bounds.max[axis];
+            }
+            node.children[slot] = *child;
+            node.occupied |= 1 << slot;
         }
-        self.children[slot] = child;
+        node
     }
 }
 
@@ -85,10 +88,12 @@ fn is_heap(boxes: &[Aabb]) -> bool {
     cells.windows(MANY).any(|run| run[0] == run[MANY - 1])
 }
 
-/// A hierarchy over boxes. Its leaves are ranges of positions in [`order`](Self::order).
+/// A hierarchy over boxes. Its leaves are packs of up to four of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hierarchy {
     nodes: Vec<Node>,
+    /// Where each pack starts in `order`, and where the last one ends.
+    starts: Vec<u32>,
     order: Vec<u32>,
     bounds: Option<Aabb>,
 }
@@ -104,16 +109,20 @@ impl Hierarchy {
         }
         // Reinsertion is superlinear: large scenes take the cheaper preset.
         let preset = if boxes.len() > 500_000 { BvhBuildParams::fast_build() } else { BvhBuildParams::medium_build() };
-        // A node of four boxes costs about as much as one triangle.
-        let parameters = BvhBuildParams { max_prims_per_leaf: MAX_LEAF, collapse_traversal_cost: 0.5, ..preset };
+        let parameters = BvhBuildParams { max_prims_per_leaf: 1, ..preset };
         let binary = build_bvh2(boxes, parameters, &mut Duration::default());
-        let (hierarchy, depth) = Self::collapse(&binary);
-        if 3 * depth < STACK_SIZE { hierarchy } else { Self::balanced(boxes) }
+        Self::collapse(&binary).unwrap_or_else(|| Self::balanced(boxes))
     }
 
-    /// Positions of leaves to indices of boxes.
-    pub(crate) fn order(&self) -> &[u32] {
-        &self.order
+    /// The boxes of a pack.
+    #[inline]
+    pub(crate) fn pack(&self, pack: usize) -> &[u32] {
+        &self.order[self.starts[pack] as usize..self.starts[pack + 1] as usize]
+    }
+
+    /// The boxes of all packs, one pack after the other.
+    pub(crate) fn packs(&self) -> impl Iterator<Item = &[u32]> {
+        (1..self.starts.len()).map(|end| self.pack(end - 1))
     }
 
     /// Around all boxes; nothing if there are none.
@@ -121,56 +130,49 @@ impl Hierarchy {
         self.bounds
     }
 
-    /// Collapses levels of a binary hierarchy; also returns the depth.
-    fn collapse(binary: &Bvh2) -> (Self, usize) {
-        let root = &binary.nodes[0];
-        let mut hierarchy =
-            Self { nodes: Vec::new(), order: binary.primitive_indices.clone(), bounds: Some(*root.aabb()) };
-        let mut deepest = 1;
-        if root.prim_count > 0 {
-            let mut node = Node::EMPTY;
-            node.set(0, root.aabb(), Child::leaf(root.first_index, root.prim_count));
-            hierarchy.nodes.push(node);
-            return (hierarchy, deepest);
+    /// Adds a pack of primitives.
+    fn add_pack(&mut self, primitives: &[u32]) -> Child {
+        self.order.extend(primitives);
+        self.starts.push(self.order.len() as u32);
+        Child(Child::LEAF | (self.starts.len() - 2) as u32)
+    }
+
+    /// Makes wide nodes of a binary hierarchy; nothing if it is too deep for the stack.
+    fn collapse(binary: &Bvh2) -> Option<Self> {
+        let collapse = Collapse::new(binary);
+        let bounds = *binary.nodes[0].aabb();
+        let mut hierarchy = Self { nodes: vec![Node::EMPTY], starts: vec![0], order: Vec::new(), bounds: Some(bounds) };
+        if collapse.is_leaf(0) {
+            let child = hierarchy.add_pack(&collapse.primitives(0));
+            hierarchy.nodes[0] = Node::new(&[(bounds, child)]);
+            return Some(hierarchy);
         }
-        hierarchy.nodes.push(Node::EMPTY);
         // Wide node, the binary node that it stands for, depth.
         let mut open = vec![(0, 0, 1)];
         while let Some((wide, narrow, depth)) = open.pop() {
-            deepest = deepest.max(depth);
-            let first = binary.nodes[narrow].first_index as usize;
-            let mut slots = vec![first, first + 1];
-            // Open the largest inner box until there are four.
-            while slots.len() < 4 {
-                let inner = |&&slot: &&usize| binary.nodes[slot].prim_count == 0;
-                let area = |slot: usize| binary.nodes[slot].aabb().half_area();
-                let Some(&largest) = slots.iter().filter(inner).max_by(|&&a, &&b| area(a).total_cmp(&area(b))) else {
-                    break;
-                };
-                slots.retain(|&slot| slot != largest);
-                let first = binary.nodes[largest].first_index as usize;
-                slots.extend([first, first + 1]);
+            if depth > MAX_DEPTH {
+                return None;
             }
-            for (slot, narrow) in slots.into_iter().enumerate() {
-                let node = &binary.nodes[narrow];
-                let child = if node.prim_count > 0 {
-                    Child::leaf(node.first_index, node.prim_count)
+            let mut children = Vec::with_capacity(WIDTH);
+            for narrow in collapse.children(narrow) {
+                let child = if collapse.is_leaf(narrow) {
+                    hierarchy.add_pack(&collapse.primitives(narrow))
                 } else {
                     hierarchy.nodes.push(Node::EMPTY);
                     open.push((hierarchy.nodes.len() - 1, narrow, depth + 1));
                     Child(hierarchy.nodes.len() as u32 - 1)
                 };
-                hierarchy.nodes[wide].set(slot, node.aabb(), child);
+                children.push((*binary.nodes[narrow].aabb(), child));
             }
+            hierarchy.nodes[wide] = Node::new(&children);
         }
-        (hierarchy, deepest)
+        Some(hierarchy)
     }
 
     /// A hierarchy of logarithmic depth, whatever the boxes: halves along the longest axis of the centres. For
     /// degenerate input on which the binary hierarchy is a list.
     fn balanced(boxes: &[Aabb]) -> Self {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-        let mut nodes = vec![Node::EMPTY];
         let bounds_of = |range: &[u32]| {
             range
                 .iter()
@@ -178,64 +180,62 @@ impl Hierarchy {
                 .reduce(|a, b| Aabb { min: a.min.min(b.min), max: a.max.max(b.max) })
         };
         let bounds = bounds_of(&order);
+        let mut hierarchy = Self { nodes: vec![Node::EMPTY], starts: vec![0], order: Vec::new(), bounds };
         let mut open = vec![(0, 0..order.len())];
         while let Some((wide, range)) = open.pop() {
-            for (slot, part) in quarters(&mut order, range, boxes).into_iter().enumerate() {
+            let mut children = Vec::with_capacity(WIDTH);
+            for part in eighths(&mut order, range, boxes) {
                 let Some(around) = bounds_of(&order[part.clone()]) else { continue };
-                let child = if part.len() <= MAX_LEAF as usize {
-                    Child::leaf(part.start as u32, part.len() as u32)
+                let child = if part.len() <= LANES {
+                    hierarchy.add_pack(&order[part])
                 } else {
-                    nodes.push(Node::EMPTY);
-                    open.push((nodes.len() - 1, part));
-                    Child(nodes.len() as u32 - 1)
+                    hierarchy.nodes.push(Node::EMPTY);
+                    open.push((hierarchy.nodes.len() - 1, part));
+                    Child(hierarchy.nodes.len() as u32 - 1)
                 };
-                nodes[wide].set(slot, &around, child);
+                children.push((around, child));
             }
+            hierarchy.nodes[wide] = Node::new(&children);
         }
-        Self { nodes, order, bounds }
+        hierarchy
     }
 
-    /// Visits the leaves that the ray meets before `limit`, about from near to far. `visit` gets a range of positions and the
+    /// Visits the packs that the ray meets before `limit`, about from near to far. `visit` gets a pack and the
     /// present limit, and returns the new one; a negative limit ends the traversal.
     #[inline(always)]
-    pub(crate) fn traverse(&self, ray: &Ray, mut limit: f32, mut visit: impl FnMut(Range<usize>, f32) -> f32) {
+    pub(crate) fn traverse(&self, ray: &Ray, mut limit: f32, mut visit: impl FnMut(usize, f32) -> f32) {
         if self.nodes.is_empty() {
             return;
         }
-        let inverse = ray.direction.to_array().map(reciprocal);
+        let inverse = reciprocal(ray.direction).to_array().map(Vec4::splat);
         let origin = ray.origin.to_array().map(Vec4::splat);
-        // Which plane of each axis the ray crosses first: the upper one for negative directions.
-        let first = inverse.map(|x| usize::from(x < 0.0));
-        let inverse = inverse.map(Vec4::splat);
 
         let mut stack = ArrayVec::<(Child, f32), STACK_SIZE>::new();
         let mut current = Child(0);
         loop {
             if current.is_leaf() {
-                limit = visit(current.range(), limit);
+                limit = visit(current.pack(), limit);
             } else {
                 // Meet four boxes.
                 let node = &self.nodes[current.0 as usize];
-                let enter = |axis: usize| (node.planes[axis][first[axis] & 1] - origin[axis]) * inverse[axis];
-                let leave = |axis: usize| (node.planes[axis][first[axis] & 1 ^ 1] - origin[axis]) * inverse[axis];
-                let t_near = enter(0).max(enter(1)).max(enter(2).max(Vec4::ZERO));
-                let t_far = leave(0).min(leave(1)).min(leave(2)) * FAR_FACTOR;
-                let mut met = t_near.cmple(t_far.min(Vec4::splat(limit))).bitmask();
-
+                let [x, y, z] =
+                    [0, 1, 2].map(|axis| node.planes[axis].map(|plane| (plane - origin[axis]) * inverse[axis]));
+                let t_near = x[0].min(x[1]).max(y[0].min(y[1])).max(z[0].min(z[1]).max(Vec4::ZERO));
+                let t_far = x[0].max(x[1]).min(y[0].max(y[1])).min(z[0].max(z[1])) * FAR_FACTOR;
+                let mut met = t_near.cmple(t_far.min(Vec4::splat(limit))).bitmask() & node.occupied;
                 // Go on with the nearest, keep the others.
                 if met != 0 {
                     let t_near = t_near.to_array();
-                    let slot = met.trailing_zeros() as usize;
+                    let slot = met.trailing_zeros() as usize & 3;
                     met &= met - 1;
                     let mut nearest = (node.children[slot], t_near[slot]);
                     while met != 0 {
-                        let slot = met.trailing_zeros() as usize;
+                        let slot = met.trailing_zeros() as usize & 3;
                         met &= met - 1;
-                        let mut other = (node.children[slot], t_near[slot]);
-                        if other.1 < nearest.1 {
-                            core::mem::swap(&mut other, &mut nearest);
-                        }
-                        stack.push(other);
+                        let other = (node.children[slot], t_near[slot]);
+                        let closer = other.1 < nearest.1;
+                        stack.push(if closer { nearest } else { other });
+                        nearest = if closer { other } else { nearest };
                     }
                     current = nearest.0;
                     continue;
@@ -255,12 +255,13 @@ impl Hierarchy {
 
 /// `1 / x`, finite, with the sign of `x` where it is zero: so that `0 * (1 / 0)` is not NaN.
 #[inline(always)]
-fn reciprocal(x: f32) -> f32 {
-    1.0 / if x.abs() < 1e-20 { 1e-20f32.copysign(x) } else { x }
+pub(super) fn reciprocal(x: Vec3A) -> Vec3A {
+    const TINY: Vec3A = Vec3A::splat(1e-20);
+    1.0 / Vec3A::select(x.abs().cmplt(TINY), TINY.copysign(x), x)
 }
 
-/// Sorts a range into four parts of about equal size by the centres along their longest axis.
-fn quarters(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range<usize>> {
+/// Sorts a range into eight parts of about equal size by the centres along their longest axis.
+fn eighths(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range<usize>> {
     let center = |i: u32| boxes[i as usize].min + boxes[i as usize].max;
     let part = &mut order[range.clone()];
     let (low, high) = part
@@ -269,8 +270,8 @@ fn quarters(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range
     let extent = high - low;
     let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
     part.sort_by(|&a, &b| center(a)[axis].total_cmp(&center(b)[axis]));
-    let cut = |k: usize| range.start + range.len() * k / 4;
-    (0..4).map(|k| cut(k)..cut(k + 1)).collect()
+    let cut = |k: usize| range.start + range.len() * k / WIDTH;
+    (0..WIDTH).map(|k| cut(k)..cut(k + 1)).collect()
 }
 
 #[cfg(test)]
@@ -289,8 +290,8 @@ mod tests {
 
     fn met(hierarchy: &Hierarchy, ray: &Ray) -> Vec<u32> {
         let mut met = Vec::new();
-        hierarchy.traverse(ray, ray.max_distance, |range, limit| {
-            met.extend(range.map(|position| hierarchy.order()[position]));
+        hierarchy.traverse(ray, ray.max_distance, |pack, limit| {
+            met.extend(hierarchy.pack(pack));
             limit
         });
         met.sort_unstable();
@@ -301,7 +302,7 @@ mod tests {
     fn both_builders_meet_every_box_that_a_ray_meets() {
         let boxes = boxes(500);
         for hierarchy in [Hierarchy::new(&boxes), Hierarchy::balanced(&boxes)] {
-            let mut all = hierarchy.order().to_vec();
+            let mut all: Vec<u32> = hierarchy.packs().flatten().copied().collect();
             all.sort_unstable();
             assert!(all.iter().copied().eq(0..500));
             for (i, target) in boxes.iter().enumerate() {

@@ -1,12 +1,18 @@
 //! Surfaces and rays.
 
 mod analytic;
+mod collapse;
 mod hierarchy;
+mod local_geometry;
 mod mesh;
+mod shading_triangle;
+#[cfg(test)]
 mod triangle;
 mod triangle_bvh;
+mod triangle_pack;
 mod world;
 
+pub(crate) use local_geometry::LocalGeometry;
 pub use mesh::{MeshError, TriangleMesh};
-pub(crate) use triangle_bvh::TriangleBvh;
-pub(crate) use world::{LocalGeometry, Object, ObjectShape, World, WorldMesh};
+pub(crate) use shading_triangle::Triangles;
+pub(crate) use world::{Object, ObjectShape, World, WorldMesh};

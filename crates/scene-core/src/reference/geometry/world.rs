@@ -10,14 +10,16 @@ use obvhs::aabb::Aabb;
 
 use super::analytic::{intersect_disk, intersect_sphere};
 use super::hierarchy::Hierarchy;
+use super::local_geometry::LocalGeometry;
 use super::mesh::TriangleMesh;
-use super::triangle_bvh::{TriangleBvh, is_traceable};
-use crate::ray::{Ray, SurfacePoint};
+use super::shading_triangle::Triangles;
+use super::triangle_bvh::is_traceable;
+use crate::ray::Ray;
 
 /// What one object is, in its own coordinates.
 #[derive(Clone, Debug)]
 pub(crate) enum ObjectShape {
-    Mesh { mesh: Arc<TriangleMesh>, bvh: Arc<TriangleBvh> },
+    Mesh(Arc<Triangles>),
     Sphere { center: Vec3A, radius: f32, flip_normals: bool },
     Disk,
 }
@@ -52,7 +54,7 @@ impl Object {
 
     fn bounds(&self) -> Aabb {
         let local = match &self.shape {
-            ObjectShape::Mesh { bvh, .. } => match bvh.bounds() {
+            ObjectShape::Mesh(triangles) => match triangles.bvh().bounds() {
                 Some(bounds) => bounds,
                 None => Aabb { min: Vec3A::ZERO, max: Vec3A::ZERO },
             },
@@ -72,12 +74,14 @@ impl Object {
         Aabb::from_points(&corners)
     }
 
-    /// The closest hit in world distance, with the triangle and its barycentric coordinates for meshes.
+    /// The closest hit in world distance, with the slot of the triangle and its barycentric coordinates for meshes.
     #[inline]
     fn closest(&self, ray: &Ray) -> Option<(f32, u32, f32, f32)> {
         let local = self.local_ray(ray);
         match &self.shape {
-            ObjectShape::Mesh { bvh, .. } => bvh.closest(&local).map(|h| (h.hit.t, h.triangle, h.hit.u, h.hit.v)),
+            ObjectShape::Mesh(triangles) => {
+                triangles.bvh().closest(&local).map(|h| (h.hit.t, h.slot, h.hit.u, h.hit.v))
+            }
             ObjectShape::Sphere { center, radius, .. } => {
                 intersect_sphere(*radius, local.origin - *center, local.direction, ray.max_distance)
                     .map(|t| (t, 0, 0.0, 0.0))
@@ -91,7 +95,7 @@ impl Object {
     #[inline]
     fn any(&self, ray: &Ray) -> bool {
         match &self.shape {
-            ObjectShape::Mesh { bvh, .. } => bvh.any(&self.local_ray(ray)),
+            ObjectShape::Mesh(triangles) => triangles.bvh().any(&self.local_ray(ray)),
             _ => self.closest(ray).is_some(),
         }
     }
@@ -119,19 +123,16 @@ pub(crate) struct WorldHit {
 /// Where the geometry of a hit is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Primitive {
-    /// Triangle of a mesh in world coordinates.
-    World { mesh: u32, triangle: u32 },
-    /// Triangle (zero for analytic shapes) of an object.
-    Object { object: u32, triangle: u32 },
+    /// Slot of a triangle in world coordinates.
+    World { slot: u32 },
+    /// Slot of a triangle (zero for analytic shapes) of an object.
+    Object { object: u32, slot: u32 },
 }
 
 /// All surfaces, ready for rays.
 #[derive(Clone, Debug)]
 pub(crate) struct World {
-    meshes: Vec<WorldMesh>,
-    triangles: TriangleBvh,
-    /// Mesh and triangle of each triangle of the hierarchy.
-    origins: Vec<(u32, u32)>,
+    triangles: Triangles,
     objects: Vec<Object>,
     hierarchy: Hierarchy,
     bounds: Option<Aabb>,
@@ -139,22 +140,14 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(meshes: Vec<WorldMesh>, objects: Vec<Object>) -> Self {
-        let mut corners = Vec::new();
-        let mut origins = Vec::new();
-        for (index, world_mesh) in meshes.iter().enumerate() {
-            for triangle in 0..world_mesh.mesh.len() {
-                corners.push(world_mesh.mesh.corners(triangle));
-                origins.push((index as u32, triangle as u32));
-            }
-        }
-        let triangles = TriangleBvh::new(&corners);
+        let triangles = Triangles::new(meshes.iter().map(|placed| (&*placed.mesh, placed.surface)));
         let boxes: Vec<Aabb> = objects.iter().map(Object::bounds).collect();
-        let mut bounds = triangles.bounds();
+        let mut bounds = triangles.bvh().bounds();
         for b in &boxes {
             bounds = Some(bounds.map_or(*b, |all| Aabb { min: all.min.min(b.min), max: all.max.max(b.max) }));
         }
         let hierarchy = Hierarchy::new(&boxes);
-        Self { meshes, triangles, origins, objects, hierarchy, bounds }
+        Self { triangles, objects, hierarchy, bounds }
     }
 
     /// Bounds of everything; nothing if there is no surface.
@@ -168,15 +161,12 @@ impl World {
         if !is_traceable(ray) {
             return None;
         }
-        let mut best = self.triangles.closest(ray).map(|h| {
-            let (mesh, triangle) = self.origins[h.triangle as usize];
-            WorldHit {
-                distance: h.hit.t,
-                surface: self.meshes[mesh as usize].surface,
-                primitive: Primitive::World { mesh, triangle },
-                u: h.hit.u,
-                v: h.hit.v,
-            }
+        let mut best = self.triangles.bvh().closest(ray).map(|h| WorldHit {
+            distance: h.hit.t,
+            surface: self.triangles.surface(h.slot),
+            primitive: Primitive::World { slot: h.slot },
+            u: h.hit.u,
+            v: h.hit.v,
         });
         if !self.objects.is_empty() {
             let limit = best.map_or(ray.max_distance, |hit| hit.distance);
@@ -188,12 +178,12 @@ impl World {
     #[inline]
     fn closest_object(&self, ray: &Ray) -> Option<WorldHit> {
         let mut best = None;
-        self.hierarchy.traverse(ray, ray.max_distance, |range, mut limit| {
-            for &index in &self.hierarchy.order()[range] {
+        self.hierarchy.traverse(ray, ray.max_distance, |pack, mut limit| {
+            for &index in self.hierarchy.pack(pack) {
                 let object = &self.objects[index as usize];
-                if let Some((distance, triangle, u, v)) = object.closest(&ray.up_to(limit)) {
+                if let Some((distance, slot, u, v)) = object.closest(&ray.up_to(limit)) {
                     limit = distance;
-                    let primitive = Primitive::Object { object: index, triangle };
+                    let primitive = Primitive::Object { object: index, slot };
                     best = Some(WorldHit { distance, surface: object.surface, primitive, u, v });
                 }
             }
@@ -205,14 +195,14 @@ impl World {
     /// Whether anything is hit.
     #[inline]
     pub(crate) fn any(&self, ray: &Ray) -> bool {
-        is_traceable(ray) && (self.triangles.any(ray) || (!self.objects.is_empty() && self.any_object(ray)))
+        is_traceable(ray) && (self.triangles.bvh().any(ray) || (!self.objects.is_empty() && self.any_object(ray)))
     }
 
     #[inline]
     fn any_object(&self, ray: &Ray) -> bool {
         let mut found = false;
-        self.hierarchy.traverse(ray, ray.max_distance, |range, limit| {
-            found = self.hierarchy.order()[range].iter().any(|&index| self.objects[index as usize].any(ray));
+        self.hierarchy.traverse(ray, ray.max_distance, |pack, limit| {
+            found = self.hierarchy.pack(pack).iter().any(|&index| self.objects[index as usize].any(ray));
             if found { -1.0 } else { limit }
         });
         found
@@ -222,16 +212,11 @@ impl World {
     #[inline]
     pub(crate) fn local_geometry(&self, ray: &Ray, hit: &WorldHit, with_tangents: bool) -> LocalGeometry {
         match hit.primitive {
-            Primitive::World { mesh, triangle } => {
-                let mesh = &self.meshes[mesh as usize].mesh;
-                LocalGeometry::of_triangle(mesh, triangle as usize, hit.u, hit.v, with_tangents)
-            }
-            Primitive::Object { object, triangle } => {
+            Primitive::World { slot } => self.triangles.geometry(slot, hit.u, hit.v, with_tangents),
+            Primitive::Object { object, slot } => {
                 let object = &self.objects[object as usize];
                 let local = match &object.shape {
-                    ObjectShape::Mesh { mesh, .. } => {
-                        LocalGeometry::of_triangle(mesh, triangle as usize, hit.u, hit.v, with_tangents)
-                    }
+                    ObjectShape::Mesh(triangles) => triangles.geometry(slot, hit.u, hit.v, with_tangents),
                     ObjectShape::Sphere { center, radius, flip_normals } => {
                         let position = object.to_object.transform_point3a(ray.at(hit.distance));
                         LocalGeometry::of_sphere(position, *center, *radius, *flip_normals)
@@ -243,103 +228,5 @@ impl World {
                 local.transformed(object)
             }
         }
-    }
-}
-
-/// Position, normals and tangents at a point of a surface.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LocalGeometry {
-    pub point: SurfacePoint,
-    pub shading_normal: Vec3A,
-    pub dpdu: Vec3A,
-    pub dpdv: Vec3A,
-}
-
-impl LocalGeometry {
-    /// Without `with_tangents`, the derivatives are any two edges.
-    #[inline(always)]
-    fn of_triangle(mesh: &TriangleMesh, triangle: usize, u: f32, v: f32, with_tangents: bool) -> Self {
-        let indices = mesh.triangles()[triangle].map(|i| i as usize);
-        let [a, b, c] = indices.map(|i| Vec3A::from(mesh.positions()[i]));
-        let w = 1.0 - u - v;
-        let (e1, e2) = (b - a, c - a);
-        let position = a * w + b * u + c * v;
-        let mut normal = e1.cross(e2).normalize_or(Vec3A::Z);
-        let mut shading_normal = normal;
-        if let [Some(na), Some(nb), Some(nc)] = indices.map(|i| mesh.normals().get(i).copied()) {
-            let n = Vec3A::from(na) * w + Vec3A::from(nb) * u + Vec3A::from(nc) * v;
-            if let Some(n) = n.try_normalize() {
-                shading_normal = n;
-                // The outside is where the vertex normals point, whatever the winding.
-                normal *= 1.0f32.copysign(normal.dot(n));
-            }
-        }
-        let magnitude = a.abs().max(b.abs()).max(c.abs()).max_element();
-        let mut point = SurfacePoint { position, normal, uv: [u, v], error: SurfacePoint::error_of(magnitude) };
-        let (mut dpdu, mut dpdv) = (e1, e2);
-        if let [Some(ta), Some(tb), Some(tc)] = indices.map(|i| mesh.uvs().get(i).copied()) {
-            point.uv = core::array::from_fn(|i| ta[i] * w + tb[i] * u + tc[i] * v);
-            if !with_tangents {
-                return Self { point, shading_normal, dpdu, dpdv };
-            }
-            let (d1, d2) = ([tb[0] - ta[0], tb[1] - ta[1]], [tc[0] - ta[0], tc[1] - ta[1]]);
-            let determinant = d1[0] * d2[1] - d1[1] * d2[0];
-            if determinant != 0.0 {
-                let inverse = 1.0 / determinant;
-                dpdu = (e1 * d2[1] - e2 * d1[1]) * inverse;
-                dpdv = (e2 * d1[0] - e1 * d2[0]) * inverse;
-            }
-        }
-        Self { point, shading_normal, dpdu, dpdv }
-    }
-
-    fn of_sphere(position: Vec3A, center: Vec3A, radius: f32, flip_normals: bool) -> Self {
-        let outward = (position - center).normalize_or(Vec3A::Z);
-        let normal = if flip_normals { -outward } else { outward };
-        let position = center + outward * radius.abs();
-        let magnitude = position.abs().max(center.abs()).max_element().max(radius.abs());
-        let phi = outward.y.atan2(outward.x);
-        let phi = if phi < 0.0 { phi + core::f32::consts::TAU } else { phi };
-        let theta = outward.z.clamp(-1.0, 1.0).acos();
-        let uv = [phi / core::f32::consts::TAU, theta / core::f32::consts::PI];
-        let dpdu = Vec3A::new(-outward.y, outward.x, 0.0) * (core::f32::consts::TAU * radius);
-        let dpdv =
-            Vec3A::new(outward.z * phi.cos(), outward.z * phi.sin(), -theta.sin()) * (core::f32::consts::PI * radius);
-        let point = SurfacePoint { position, normal, uv, error: SurfacePoint::error_of(magnitude) };
-        Self { point, shading_normal: normal, dpdu, dpdv }
-    }
-
-    fn of_disk(position: Vec3A) -> Self {
-        let r = position.truncate().length();
-        let phi = position.y.atan2(position.x);
-        let phi = if phi < 0.0 { phi + core::f32::consts::TAU } else { phi };
-        let uv = [r, phi / core::f32::consts::TAU];
-        let (sin, cos) = phi.sin_cos();
-        let position = Vec3A::new(position.x, position.y, 0.0);
-        let point = SurfacePoint { position, normal: Vec3A::Z, uv, error: SurfacePoint::error_of(1.0) };
-        let dpdu = Vec3A::new(cos, sin, 0.0);
-        let dpdv = Vec3A::new(-sin, cos, 0.0) * (core::f32::consts::TAU * r);
-        Self { point, shading_normal: Vec3A::Z, dpdu, dpdv }
-    }
-
-    /// From the object's to the world's coordinates; the bound of the round-off grows by that of the transform.
-    #[inline]
-    fn transformed(mut self, object: &Object) -> Self {
-        let m = &object.to_world;
-        let p = self.point.position;
-        let position = m.transform_point3a(p);
-        let scale = m.matrix3.x_axis.abs() + m.matrix3.y_axis.abs() + m.matrix3.z_axis.abs();
-        let passed = m.matrix3.x_axis.abs() * p.x.abs()
-            + m.matrix3.y_axis.abs() * p.y.abs()
-            + m.matrix3.z_axis.abs() * p.z.abs()
-            + m.translation.abs();
-        let magnitude = passed.max(position.abs()).max_element();
-        self.point.error = SurfacePoint::error_of(magnitude) + self.point.error * scale.max_element();
-        self.point.position = position;
-        self.point.normal = (object.normal_matrix * self.point.normal).normalize_or(Vec3A::Z);
-        self.shading_normal = (object.normal_matrix * self.shading_normal).normalize_or(self.point.normal);
-        self.dpdu = m.transform_vector3a(self.dpdu);
-        self.dpdv = m.transform_vector3a(self.dpdv);
-        self
     }
 }
