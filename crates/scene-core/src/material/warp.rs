@@ -36,11 +36,19 @@ pub(super) fn sin_cos_turn(turn: f32) -> (f32, f32) {
 #[inline]
 pub(super) fn concentric_disk(u: [f32; 2]) -> [f32; 2] {
     let [a, b] = u.map(|x| 2.0 * x - 1.0);
-    let first = a.abs() > b.abs();
-    let (r, other) = if first { (a, b) } else { (b, a) };
-    let quotient = if r != 0.0 { other / r } else { 0.0 };
-    let (sin, cos) = sin_cos_octant(FRAC_PI_4 * quotient);
-    if first { [r * cos, r * sin] } else { [r * sin, r * cos] }
+    // Which of the two is larger cannot be guessed: select by masks.
+    let mask = u32::from(a.abs() > b.abs()).wrapping_neg();
+    let (r, other) = (select(mask, a, b), select(mask, b, a));
+    // Both are zero, or r is not.
+    let (sin, cos) = sin_cos_octant(FRAC_PI_4 * (other / (r + f32::from_bits(u32::from(r == 0.0)))));
+    let (long, short) = (r * cos, r * sin);
+    [select(mask, long, short), select(mask, short, long)]
+}
+
+/// `a` if the mask is all ones, `b` if it is zero.
+#[inline(always)]
+fn select(mask: u32, a: f32, b: f32) -> f32 {
+    f32::from_bits(a.to_bits() & mask | b.to_bits() & !mask)
 }
 
 /// A direction with density `cos / pi`. Its cosine is never zero.

@@ -27,8 +27,8 @@ impl ColorSpace {
 
 /// An image in linear RGB, with or without alpha.
 ///
-/// Pixels of eight bits are kept as such and decoded by table at each lookup (4 bytes per pixel); others are 32-bit
-/// floats. Clone it behind an [`Arc`](std::sync::Arc).
+/// Pixels of eight bits are kept as such and decoded by table at each lookup (4 bytes per pixel), in tiles of 4 x 4, each a cache
+/// line, so that the four pixels of a bilinear lookup lie in 1.6 lines on average; others are 32-bit floats. Clone it behind an [`Arc`](std::sync::Arc).
 #[derive(Clone)]
 pub struct Image {
     width: u32,
@@ -40,9 +40,14 @@ pub struct Image {
 
 #[derive(Clone)]
 enum Pixels {
-    Bytes { rgba: Vec<[u8; 4]>, decode: Box<[f32; 256]> },
+    Bytes { tiles: Vec<Tile>, decode: Box<[f32; 256]> },
     Floats { rgb: Vec<[f32; 3]>, alpha: Vec<f32> },
 }
+
+/// 4 x 4 pixels, row by row.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Tile([[u8; 4]; 16]);
 
 impl Image {
     /// An image of linear RGB values, row by row from the upper left corner.
@@ -88,7 +93,14 @@ impl Image {
         check_size(width, height, rgba.len())?;
         let decode = Box::new(std::array::from_fn(|i| color_space.decode(i as f32 / 255.0)));
         let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
-        Ok(Self { width, height, mean: Rgb::ZERO, has_alpha, pixels: Pixels::Bytes { rgba, decode } }.with_mean())
+        let mut tiles = vec![Tile([[0; 4]; 16]); width.div_ceil(4) as usize * height.div_ceil(4) as usize];
+        for (row, y) in rgba.chunks_exact(width as usize).zip(0..) {
+            for (pixel, x) in row.iter().zip(0..) {
+                let (tile, within) = tiled(width, x, y);
+                tiles[tile].0[within] = *pixel;
+            }
+        }
+        Ok(Self { width, height, mean: Rgb::ZERO, has_alpha, pixels: Pixels::Bytes { tiles, decode } }.with_mean())
     }
 
     /// Width in pixels.
@@ -120,14 +132,19 @@ impl Image {
     /// Outside the image.
     #[inline]
     pub fn pixel(&self, x: u32, y: u32) -> Rgb {
-        let index = y as usize * self.width as usize + x as usize;
         match &self.pixels {
-            Pixels::Bytes { rgba, decode } => {
-                let [r, g, b, _] = rgba[index];
+            Pixels::Bytes { tiles, decode } => {
+                let (tile, within) = tiled(self.width, x, y);
+                let [r, g, b, _] = tiles[tile].0[within];
                 Rgb::new(decode[r as usize], decode[g as usize], decode[b as usize])
             }
-            Pixels::Floats { rgb, .. } => rgb[index].into(),
+            Pixels::Floats { rgb, .. } => rgb[self.index(x, y)].into(),
         }
+    }
+
+    #[inline]
+    fn index(&self, x: u32, y: u32) -> usize {
+        y as usize * self.width as usize + x as usize
     }
 
     /// The opacity of the pixel in column `x` and row `y`: 1 if the image has no alpha.
@@ -135,11 +152,13 @@ impl Image {
     /// # Panics
     /// Outside the image.
     pub fn alpha(&self, x: u32, y: u32) -> f32 {
-        let index = y as usize * self.width as usize + x as usize;
         match &self.pixels {
-            Pixels::Bytes { rgba, .. } => f32::from(rgba[index][3]) / 255.0,
+            Pixels::Bytes { tiles, .. } => {
+                let (tile, within) = tiled(self.width, x, y);
+                f32::from(tiles[tile].0[within][3]) / 255.0
+            }
             Pixels::Floats { alpha, .. } if alpha.is_empty() => 1.0,
-            Pixels::Floats { alpha, .. } => alpha[index],
+            Pixels::Floats { alpha, .. } => alpha[self.index(x, y)],
         }
     }
 
@@ -163,6 +182,13 @@ impl Image {
         self.mean = sum.map(|s| (s / count) as f32).into();
         self
     }
+}
+
+/// The tile of a pixel, and which of its 16 it is.
+#[inline]
+fn tiled(width: u32, x: u32, y: u32) -> (usize, usize) {
+    let tile = (y / 4) as usize * width.div_ceil(4) as usize + (x / 4) as usize;
+    (tile, (y % 4 * 4 + x % 4) as usize)
 }
 
 fn check_size(width: u32, height: u32, found: usize) -> Result<(), TextureError> {
@@ -192,6 +218,18 @@ mod tests {
         assert!(matches!(Image::from_rgb(2, 2, vec![[0.0; 3]; 3]), Err(TextureError::PixelCount { found: 3, .. })));
         let nan = vec![[0.0; 3], [0.0, f32::NAN, 0.0]];
         assert_eq!(Image::from_rgb(1, 2, nan).unwrap_err(), TextureError::NotFinite { x: 0, y: 1 });
+    }
+
+    #[test]
+    fn tiles_keep_every_pixel_in_its_place() {
+        let (width, height) = (7, 9);
+        let bytes = (0..width * height).map(|i| [i as u8, 255 - i as u8, 7, i as u8]).collect();
+        let image = Image::from_rgba8(width, height, bytes, ColorSpace::Linear).unwrap();
+        for i in 0..width * height {
+            let (x, y) = (i % width, i / width);
+            assert_eq!(image.pixel(x, y)[0], i as f32 / 255.0);
+            assert_eq!(image.alpha(x, y), i as f32 / 255.0);
+        }
     }
 
     #[test]
