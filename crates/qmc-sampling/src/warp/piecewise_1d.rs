@@ -86,6 +86,9 @@ impl<F: Real> PiecewiseConstant1d<F> {
     #[must_use]
     pub fn choose(&self, u: F) -> (usize, F, F) {
         let u = u.clamp_unit();
+        if self.cdf.len() == 2 {
+            return (0, F::ONE, u);
+        }
         let cell = cell_at(&self.cdf, &self.guide, u);
         let start = self.cdf[cell];
         let probability = self.cdf[cell + 1] - start;
