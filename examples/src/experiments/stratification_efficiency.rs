@@ -16,6 +16,11 @@ const MAX_DEPTH: u32 = 6;
 /// The classical heuristics: the better of the first two is what stratification is compared with.
 const CLASSICAL: [AnyHeuristic; 3] = [AnyHeuristic::Balance, AnyHeuristic::Power, AnyHeuristic::Maximum];
 
+/// Stratification by the geometry term and the peaks of scattering functions.
+const STRATIFICATION: &str = "stratification";
+/// Stratification by the geometry term alone, as in the paper.
+const GEOMETRY_ALONE: &str = "stratification, geometry term alone";
+
 /// Something whose efficiency is measured.
 struct Candidate {
     estimator: &'static str,
@@ -114,7 +119,13 @@ fn candidates(context: &Context, setup: &Setup, interleaved: bool) -> Result<Vec
     }
     for &threshold in thresholds(context) {
         let settings = robust(context, setup, interleaved, threshold)?;
-        all.push(Candidate::new("robust-igi", "stratification".to_owned(), settings, Some(threshold)));
+        all.push(Candidate::new("robust-igi", STRATIFICATION.to_owned(), settings, Some(threshold)));
+    }
+    // P0's own form.
+    for &threshold in context.effort(&[100.0][..], thresholds(context)) {
+        let mut settings = robust(context, setup, interleaved, threshold)?;
+        settings.light_paths.geometry_alone = true;
+        all.push(Candidate::new("robust-igi", GEOMETRY_ALONE.to_owned(), settings, Some(threshold)));
     }
     if interleaved {
         all.push(Candidate::new("path", "power".to_owned(), setup.settings.clone(), None));
@@ -186,10 +197,15 @@ fn report_scene(setup: &Setup, interleaved: bool, candidates: &[Candidate], repo
     let limit = if interleaved { 0.8 } else { 1.2 };
     for (name, cost) in COSTS {
         let classical = best(candidates.iter().filter(|c| c.estimator == "bdpt" && c.label != "maximum"), cost);
-        let strata = best(candidates.iter().filter(|c| c.estimator == "robust-igi"), cost);
+        let strata = best(candidates.iter().filter(|c| c.label == STRATIFICATION), cost);
+        let alone = best(candidates.iter().filter(|c| c.label == GEOMETRY_ALONE), cost);
         let (Some(classical), Some(strata)) = (classical, strata) else { continue };
         let ratio = ratio_of_means(cost(strata), cost(classical));
         report.claims.push(at_most(format!("{scene}-{sharing}-cost-in-{name}"), ratio, limit));
+        if let Some(alone) = alone {
+            let ratio = ratio_of_means(cost(alone), cost(classical));
+            report.claims.push(at_most(format!("{scene}-{sharing}-geometry-alone-cost-in-{name}"), ratio, limit));
+        }
         let path = candidates.iter().find(|c| c.estimator == "path");
         if let (Some(path), "office") = (path, scene) {
             let gain = ratio_of_means(cost(path), cost(strata));
@@ -208,12 +224,12 @@ fn report_scene(setup: &Setup, interleaved: bool, candidates: &[Candidate], repo
 fn fixed_threshold(sweeps: &[Vec<Candidate>], report: &mut Report) {
     let (name, cost) = COSTS[0];
     let strata = |candidates: &'_ [Candidate]| -> Vec<usize> {
-        (0..candidates.len()).filter(|&k| candidates[k].estimator == "robust-igi").collect()
+        (0..candidates.len()).filter(|&k| candidates[k].label == STRATIFICATION).collect()
     };
     let Some(first) = sweeps.first() else { return };
     let worst = |k: usize| -> Option<Ratio> {
         let ratios = sweeps.iter().filter_map(|candidates| {
-            let best = best(candidates.iter().filter(|c| c.estimator == "robust-igi"), cost)?;
+            let best = best(candidates.iter().filter(|c| c.label == STRATIFICATION), cost)?;
             Some(ratio_of_means(cost(&candidates[k]), cost(best)))
         });
         ratios.max_by(|a, b| a.value.total_cmp(&b.value))

@@ -5,7 +5,7 @@ use scene_core::film::LayeredImage;
 use scene_core::{EmitterChoice, PowerChoice, Ray, RussianRoulette, Scene, Spectrum, Vertex};
 use vpl_gi::{LightTracing, Observer, Residual, RobustIgi, VirtualPointLights};
 
-use super::{interval, mean, render};
+use super::{Cost, interval, mean, render};
 use crate::estimators::{FirstHit, VirtualLights};
 use crate::experiments::{Claim, Context, Report, Row, Setup, ratio_of_means};
 use crate::light_paths::LightPathSettings;
@@ -108,24 +108,26 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
 
     // Figure 4. Eye paths of the classical heuristics go on as if the threshold were zero.
     let path_tracing = RobustIgi { partition: vpl_gi::Partition::hard(0.0)?, ..eye };
-    let mut lengths = [Replications::new(); 2];
+    let mut lengths = [(Replications::new(), Cost::default()); 2];
     for trial in 0..trials {
-        for (lengths, (name, eye)) in lengths.iter_mut().zip([("robust", eye), ("classical", path_tracing)]) {
+        for ((lengths, cost), (name, eye)) in lengths.iter_mut().zip([("robust", eye), ("classical", path_tracing)]) {
             let camera = strata(eye, Shown::Length)?;
             let seed = context.seed_of(&format!("figure 4, {name}"), trial);
-            let image = render(&setup, &camera, samples, seed)?.film.develop(0);
+            let rendering = render(&setup, &camera, samples, seed)?;
+            cost.push(&rendering);
+            let image = rendering.film.develop(0);
             lengths.push(mean(&image)?);
             if trial == 0 && name == "robust" {
                 context.save_picture("figure-4", &green_to_red(&image)?, 0.0)?;
             }
         }
     }
-    for (name, lengths) in ["stratification", "classical"].into_iter().zip(&lengths) {
+    for (name, (lengths, cost)) in ["stratification", "classical"].into_iter().zip(&lengths) {
         let params =
             [("figure", 4.into()), ("heuristic", name.into()), ("mean eye path length", lengths.mean().into())];
-        report.rows.push(Row::new(SCENE, "robust-igi", params));
+        report.rows.push(cost.fill(Row { variance: lengths.variance(), ..Row::new(SCENE, "robust-igi", params) }));
     }
-    let ratio = ratio_of_means(&lengths[0], &lengths[1]);
+    let ratio = ratio_of_means(&lengths[0].0, &lengths[1].0);
     report.claims.push(Claim {
         id: "figure-4-eye-paths-are-shorter".to_owned(),
         paper: "< 1".to_owned(),
@@ -137,11 +139,13 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
     // Figure 5.
     let mut before: Option<Replications> = None;
     for stratum in 1..MAX_DEPTH {
-        let mut means = Replications::new();
+        let (mut means, mut cost) = (Replications::new(), Cost::default());
         for trial in 0..trials {
             let camera = strata(eye, Shown::Stratum(stratum))?;
             let seed = context.seed_of(&format!("figure 5, {stratum}"), trial);
-            let image = render(&setup, &camera, samples, seed)?.film.develop(0);
+            let rendering = render(&setup, &camera, samples, seed)?;
+            cost.push(&rendering);
+            let image = rendering.film.develop(0);
             means.push(mean(&image)?);
             if trial == 0 {
                 context.save_picture(&format!("figure-5-{stratum}"), &image, 2.0 * (stratum - 1) as f32)?;
@@ -155,7 +159,7 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
             ("low", low.into()),
             ("high", high.into()),
         ];
-        report.rows.push(Row::new(SCENE, "robust-igi", params));
+        report.rows.push(cost.fill(Row { variance: means.variance(), ..Row::new(SCENE, "robust-igi", params) }));
         if let Some(before) = before {
             let ratio = ratio_of_means(&means, &before);
             report.claims.push(Claim {

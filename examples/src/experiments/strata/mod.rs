@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use qmc_sampling::{OwenSobol, Replications};
 use scene_core::film::LayeredImage;
 
-use super::{Context, Report, Setup};
+use super::{Context, Report, Row, Setup};
 use crate::estimators::NoLightPaths;
 use crate::program::Failure;
 use crate::render::{Budget, CameraPass, Job, Rendering};
@@ -35,6 +35,24 @@ fn render(setup: &Setup, camera: &impl CameraPass, samples: u64, seed: u64) -> R
         threads: setup.settings.threads,
     };
     Ok(job.render(|_| ControlFlow::Continue(()))?)
+}
+
+/// What the renderings of a row cost, and their means.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    seconds: Replications,
+    rays: Replications,
+}
+
+impl Cost {
+    fn push(&mut self, rendering: &Rendering) {
+        self.seconds.push(rendering.seconds);
+        self.rays.push(rendering.rays.total() as f64);
+    }
+
+    fn fill(&self, row: Row) -> Row {
+        Row { seconds: self.seconds.mean(), rays: self.rays.mean().round() as u64, ..row }
+    }
 }
 
 /// The mean of the image over pixels and channels.

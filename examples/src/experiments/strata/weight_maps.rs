@@ -5,7 +5,7 @@ use scene_core::film::LayeredImage;
 use scene_core::{EmitterChoice, PowerChoice, Ray, RussianRoulette, Scene, Spectrum, Vertex};
 use vpl_gi::{Bidirectional, LightPaths, LightTracing, Observer, TechniqueSet, Threshold};
 
-use super::{mean, render};
+use super::{Cost, mean, render};
 use crate::choices::{AnyHeuristic, AnyPathHeuristic};
 use crate::estimators::{BidirectionalPaths, FirstHit};
 use crate::experiments::{Claim, Context, Report, Row, Setup, ratio_of_means};
@@ -93,13 +93,15 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
         let name = format!("{heuristic:?}").to_lowercase();
         let mut sums = Replications::new();
         let mut parts = [Replications::new(); 2];
-        let mut pictures = Vec::new();
+        let (mut pictures, mut cost) = (Vec::new(), Cost::default());
         for trial in 0..trials {
             let mut sum = 0.0;
             for (part, samples_light) in parts.iter_mut().zip([true, false]) {
                 let camera = technique(&setup, heuristic, samples_light)?;
                 let seed = context.seed_of(&format!("figure 3, {name}, {samples_light}"), trial);
-                let image = render(&setup, &camera, samples, seed)?.film.develop(0);
+                let rendering = render(&setup, &camera, samples, seed)?;
+                cost.push(&rendering);
+                let image = rendering.film.develop(0);
                 part.push(mean(&image)?);
                 sum += mean(&image)?;
                 if trial == 0 {
@@ -118,7 +120,9 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
             ("light", (parts[0].mean() / sums.mean()).into()),
             ("direction", (parts[1].mean() / sums.mean()).into()),
         ];
-        report.rows.push(Row::new(SCENE, "bdpt, direct light", params));
+        report
+            .rows
+            .push(cost.fill(Row { variance: variance_of(&parts), ..Row::new(SCENE, "bdpt, direct light", params) }));
         let ratio = ratio_of_means(&sums, &truth);
         report.claims.push(Claim {
             id: format!("figure-3-{name}-adds-up"),
@@ -130,6 +134,11 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
         });
     }
     Ok(())
+}
+
+/// Of the sum of the means, from one rendering to another.
+fn variance_of(parts: &[Replications; 2]) -> f64 {
+    parts.iter().map(Replications::variance).sum()
 }
 
 fn technique(
