@@ -45,7 +45,7 @@ impl PartitionName {
 #[command(next_help_heading = "Light paths (robust-igi, instant-radiosity, bdpt)")]
 pub struct LightPathSettings {
     /// Threshold of the geometry term: a number in units of 1/R^2, with the radius R of the scene; or `abs:T` in 1/length^2;
-    /// `inf` is allowed [default: 30, and inf for instant-radiosity].
+    /// `inf` is allowed [default: 100, and inf for instant-radiosity].
     #[arg(long, value_parser = parse_threshold)]
     pub threshold: Option<Threshold>,
     /// What of an edge connections take. What instant-radiosity leaves is lost, with robust-igi scattered rays take it.
@@ -77,7 +77,7 @@ pub struct LightPathSettings {
 
 const DEFAULT_LIGHT_PATHS: u32 = 32;
 /// In units of 1/R^2.
-const DEFAULT_THRESHOLD: f32 = 30.0;
+const DEFAULT_THRESHOLD: f32 = 100.0;
 
 /// The tile of `--interleave`, if there is one.
 pub type Interleave = Option<Interleaved>;

@@ -89,7 +89,12 @@ fn list_names_what_can_be_asked_for() {
         "light",
         "direct",
         "ao",
+        "robust-igi",
+        "instant-radiosity",
+        "bdpt",
         "balance",
+        "stratification",
+        "strata",
         "sobol",
         "gaussian",
         "samplers",
@@ -103,7 +108,7 @@ fn list_names_what_can_be_asked_for() {
 fn render_writes_images_and_stats_and_says_nothing_in_a_pipe() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    for estimator in ["path", "light", "direct", "ao"] {
+    for estimator in ["path", "light", "direct", "ao", "robust-igi", "instant-radiosity", "bdpt"] {
         let more =
             ["--estimator", estimator, "--out", "a.exr", "--out", "a.png", "--stats", "a.json", "--threads", "2"];
         succeeds(folder.path(), &tiny(&more));
@@ -131,7 +136,13 @@ fn render_writes_images_and_stats_and_says_nothing_in_a_pipe() {
         assert_eq!((&stats["scene"], &stats["estimator"]), (&"cornell-box".into(), &estimator.into()));
         assert_eq!((&stats["width"], &stats["height"], &stats["spp"]), (&8.into(), &6.into(), &1.into()));
         assert_eq!(stats["threads"], 2);
-        assert_eq!(stats["paths"], if estimator == "light" { 96 } else { 48 });
+        // Light paths whose splats are on the film count: as many as there are pixels, or those of a tile.
+        let light_paths = match estimator {
+            "light" => 48,
+            "bdpt" => 9 * 32,
+            _ => 0,
+        };
+        assert_eq!(stats["paths"], 48 + light_paths);
         assert!(stats["closest_hit_rays"].as_u64().unwrap() >= 48);
         assert!(stats["load_seconds"].as_f64().unwrap() > 0.0 && stats["render_seconds"].as_f64().unwrap() > 0.0);
     }
@@ -156,6 +167,47 @@ fn the_command_line_fixes_the_image() {
     assert_ne!(first, pixels("c.exr", &["--seed", "1"]));
     assert_ne!(first, pixels("d.exr", &["--max-depth", "2"]));
     assert_eq!(pixels("e.exr", &["--estimator", "direct"]), pixels("d.exr", &["--max-depth", "2"]));
+}
+
+/// The options of light paths change the image, and what makes no sense is refused.
+#[test]
+fn light_paths_have_options() {
+    let folder = tempfile::tempdir().unwrap();
+    let pixels = |more: &[&str]| {
+        succeeds(folder.path(), &tiny(&[&["--out", "a.exr", "--estimator", "robust-igi"], more].concat()));
+        LayeredImage::read_exr(&folder.path().join("a.exr")).unwrap().rgb().unwrap()
+    };
+    let first = pixels(&[]);
+    assert_eq!(first, pixels(&["--threads", "1"]));
+    for more in [
+        &["--threshold", "1"][..],
+        &["--threshold", "abs:1e-9"],
+        &["--partition", "soft", "--threshold", "1"],
+        &["--light-paths", "7"],
+        &["--interleave", "none"],
+        &["--interleave", "2x5"],
+        &["--shadow-rays", "sampled:2"],
+        &["--shadow-rays", "ordered:0.5"],
+        &["--gather", "2"],
+        &["--discontinuity-buffer"],
+    ] {
+        assert_ne!(first, pixels(more), "{more:?}");
+    }
+    for (more, reason) in [
+        (["--threshold", "-1"], "not negative"),
+        (["--threshold", "many"], "many"),
+        (["--interleave", "3"], "COLUMNSxROWS"),
+        (["--interleave", "0x3"], "COLUMNSxROWS"),
+        (["--light-paths", "0"], "0"),
+        (["--shadow-rays", "few"], "sampled:N"),
+        (["--partition", "none"], "none"),
+    ] {
+        let output = run(folder.path(), &tiny(&more));
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{more:?}: {message}");
+        assert!(message.contains(reason), "{more:?}: '{message}' does not say '{reason}'");
+    }
+    fails(folder.path(), &tiny(&["--heuristic", "stratification"]), &["whole paths"]);
 }
 
 #[test]

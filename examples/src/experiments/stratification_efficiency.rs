@@ -57,7 +57,7 @@ impl Candidate {
 /// squared error times cost, which does not depend on the number of samples; cost is counted in rays, and in seconds.
 pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
     let mut report = context.report();
-    let size = context.effort([40, 30], [96, 72]);
+    let size = context.effort([40, 30], [64, 48]);
     let mut setups = Vec::new();
     for name in ["office", "conference"] {
         setups.push(Setup::builtin(context, name, size)?);
@@ -140,7 +140,7 @@ fn compare(
     candidates: &mut [Candidate],
     reference: &LayeredImage,
 ) -> Result<(), Failure> {
-    let trials = 12;
+    let trials = context.effort(24, 8);
     let progress = context.progress(trials * candidates.len() as u64);
     let is_cheap =
         |candidate: &Candidate| candidate.estimator == "path" || candidate.settings.light_paths.interleave.is_none();

@@ -22,7 +22,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 #[non_exhaustive]
 pub enum Command {
-    /// Render a builtin interior into out/, with a table of time, rays, error and efficiency.
+    /// Render a builtin office into out/ in two ways, with a table of time, rays, error and efficiency.
     Showcase(ShowcaseArguments),
     /// Render a scene.
     Render(Box<RenderArguments>),
@@ -51,7 +51,7 @@ pub struct ShowcaseArguments {
     pub threads: usize,
 }
 
-const DEFAULT_SHOWCASE_SAMPLES: u64 = 64;
+const DEFAULT_SHOWCASE_SAMPLES: u64 = 24;
 
 impl Default for ShowcaseArguments {
     fn default() -> Self {

@@ -11,37 +11,41 @@ use super::{Failure, ShowcaseArguments, print};
 use crate::output::{Progress, check_writable, save_image};
 use crate::render::{Budget, Rendering};
 
-/// Renders the builtin interior with direct light alone and with all light, and prints what each cost.
+/// How many samples of path tracing take as long as one of robust instant global illumination, about.
+const ROBUST_SAMPLE_COST: u64 = 12;
+
+/// Renders the builtin office by path tracing and by robust instant global illumination, in about the same time, and prints what each cost.
 pub(super) fn run(arguments: &ShowcaseArguments) -> Result<(), Failure> {
-    let mut description = builtin::interior();
+    let mut description = builtin::office();
     if let Some([width, height]) = arguments.size {
         (description.camera.width, description.camera.height) = (width, height);
     }
     let scene = ReferenceScene::new(description)?;
     std::fs::create_dir_all(&arguments.out)
         .map_err(|error| format!("cannot create {}: {error}", arguments.out.display()))?;
-    let runs = [("direct", EstimatorName::Direct), ("path", EstimatorName::Path)];
+    // A sample that is connected to many light paths costs as much as several of path tracing.
+    let fewer = arguments.spp.div_ceil(ROBUST_SAMPLE_COST);
+    let runs = [
+        ("path", EstimatorName::Path, arguments.spp),
+        ("robust-igi", EstimatorName::RobustIgi, fewer.max(2).min(arguments.spp)),
+    ];
     let file = |name: &str, extension: &str| arguments.out.join(format!("{}-{name}.{extension}", scene.name()));
-    for (name, _) in runs {
+    for (name, ..) in runs {
         check_writable(&file(name, "exr"))?;
     }
 
     let [width, height] = scene.sensor().resolution();
     let mut table = format!(
-        "{}: {} triangles, {} emitters, {width} x {height} pixels, {} samples per pixel\n\n\
-         estimator    seconds       rays  Mrays/s  error %  efficiency\n",
+        "{}: {} triangles, {} emitters, {width} x {height} pixels\n\n\
+         estimator    samples    seconds       rays  Mrays/s  error %  efficiency\n",
         scene.name(),
         scene.triangle_count(),
         scene.emitters().len(),
-        arguments.spp,
     );
-    for (name, estimator) in runs {
-        let settings = RenderSettings {
-            estimator,
-            threads: arguments.threads,
-            ..RenderSettings::new(Budget::Samples(arguments.spp))
-        };
-        let progress = Progress::counting(arguments.spp, "samples per pixel");
+    for (name, estimator, samples) in runs {
+        let settings =
+            RenderSettings { estimator, threads: arguments.threads, ..RenderSettings::new(Budget::Samples(samples)) };
+        let progress = Progress::counting(samples, "samples per pixel");
         let (image, rendering) = render_to_image(&scene, &settings, |pass| {
             progress.add(pass.samples - progress.done());
             ControlFlow::Continue(())
@@ -55,7 +59,7 @@ pub(super) fn run(arguments: &ShowcaseArguments) -> Result<(), Failure> {
         "\nerror: relative standard error of a pixel, root mean square over the image, from its own samples\n\
          efficiency: 1 / (error^2 * seconds), with the error as a fraction\n\
          images: {} and the same names with .exr",
-        runs.map(|(name, _)| file(name, "png").display().to_string()).join(", "),
+        runs.map(|(name, ..)| file(name, "png").display().to_string()).join(", "),
     );
     print(&table)
 }
@@ -64,7 +68,8 @@ fn row(name: &str, image: &LayeredImage, rendering: &Rendering) -> String {
     let error = relative_standard_error(image);
     let rays = rendering.rays.total() as f64;
     format!(
-        "{name:<9} {:>10.2} {:>10.3e} {:>8.2} {:>8.2} {:>11.3}\n",
+        "{name:<11} {:>8} {:>10.2} {:>10.3e} {:>8.2} {:>8.2} {:>11.3}\n",
+        rendering.samples,
         rendering.seconds,
         rays,
         rays / rendering.seconds / 1e6,
