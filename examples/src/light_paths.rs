@@ -46,7 +46,7 @@ impl PartitionName {
 pub struct LightPathSettings {
     /// Threshold of the geometry term: a number in units of 1/R^2, with the radius R of the scene; or `abs:T` in 1/length^2;
     /// `inf` is allowed [default: 100, and inf for instant-radiosity].
-    #[arg(long, value_parser = parse_threshold)]
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_threshold)]
     pub threshold: Option<Threshold>,
     /// What of an edge connections take. What instant-radiosity leaves is lost, with robust-igi scattered rays take it.
     #[arg(long, value_enum, default_value_t)]

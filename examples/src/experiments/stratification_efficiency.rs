@@ -140,7 +140,7 @@ fn compare(
     candidates: &mut [Candidate],
     reference: &LayeredImage,
 ) -> Result<(), Failure> {
-    let trials = context.effort(24, 8);
+    let trials = context.effort(24, 16);
     let progress = context.progress(trials * candidates.len() as u64);
     let is_cheap =
         |candidate: &Candidate| candidate.estimator == "path" || candidate.settings.light_paths.interleave.is_none();
