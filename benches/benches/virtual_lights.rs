@@ -150,7 +150,42 @@ fn with_rays(criterion: &mut Criterion) {
             });
         });
     }
+    // Would shadow rays gain from coherence? The same lights along a Z-order curve, so that neighbouring rays from one origin are alike.
+    let sorted = along_curve(&scene, &lights);
+    let robust = RobustIgi::new(partition);
+    group.bench_function("all shadow rays, lights along a curve", |bencher| {
+        bencher.iter(|| {
+            let samplers = Independent::new(2);
+            let mut sum = Rgb::ZERO;
+            for k in 0..count {
+                let raster =
+                    [(k * 37 % 101) as f32 / 101.0 * width as f32, (k * 53 % 97) as f32 / 97.0 * height as f32];
+                let ray = scene.sensor().sample_ray(raster, [0.5; 2]).ray;
+                sum += robust.radiance(&scene, &sorted, ray, &mut samplers.sampler(1, k));
+            }
+            sum
+        });
+    });
     group.finish();
+}
+
+/// Sorted by the interleaved bits of their positions.
+fn along_curve<'s>(
+    scene: &ReferenceScene,
+    lights: &VirtualPointLights<SceneVertex<'s>>,
+) -> VirtualPointLights<SceneVertex<'s>> {
+    let (center, radius) = scene.bounding_sphere();
+    let spread = |x: u32| (0..10).fold(0u32, |bits, k| bits | ((x >> k & 1) << (3 * k)));
+    let code = |light: &vpl_gi::VirtualPointLight<SceneVertex<'s>>| {
+        let place = light.point().map_or(center, |point| point.position);
+        let cell = ((place - center) / radius * 511.0 + 512.0).to_array().map(|x| spread((x as u32).min(1023)));
+        cell[0] | cell[1] << 1 | cell[2] << 2
+    };
+    let mut all: Vec<_> = lights.as_slice().to_vec();
+    all.sort_by_key(code);
+    let mut sorted = VirtualPointLights::new(lights.paths());
+    all.into_iter().for_each(|light| sorted.push(scene, light));
+    sorted
 }
 
 criterion_group!(benches, shading_loop, with_rays);
