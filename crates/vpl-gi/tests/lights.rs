@@ -15,7 +15,7 @@ use vpl_gi::{
     LightKind, LightTracing, Partition, VirtualPointLights, geometry_term, openness, photon_cloud, unshadowed,
 };
 
-static SUITE: Suite = Suite::with_share("vpl-gi", 3, 5e-9);
+static SUITE: Suite = Suite::with_share("vpl-gi", 3, 4e-9);
 
 /// The Cornell box, as it is or with glossy blocks and coated walls, so that no light path is diffuse throughout.
 fn scenes() -> Vec<ReferenceScene> {

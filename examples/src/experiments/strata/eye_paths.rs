@@ -89,8 +89,8 @@ impl<X: Vertex> Observer<X> for Seen<X::Spectrum> {
 
 /// Pictures `figure-4.png` (from green, one vertex, to red, five) and `figure-5-K.png` (stratum `K`, amplified).
 pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let size = context.effort([64, 48], [400, 300]);
-    let (samples, trials) = (context.effort(4, 16), context.effort(4, 8));
+    let size = context.effort([64, 48], [240, 180]);
+    let (samples, trials) = (context.effort(4, 8), context.effort(4, 8));
     let mut setup = Setup::builtin(context, SCENE, size)?;
     setup.settings.max_depth = MAX_DEPTH;
     let eye = LightPathSettings::default().robust(&setup.scene, Residual::Scatter)?;

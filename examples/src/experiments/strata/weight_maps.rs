@@ -74,8 +74,8 @@ impl<X: Vertex> Observer<X> for OfTechnique<X::Spectrum> {
 
 /// Pictures `figure-3-HEURISTIC-light.png`, `-direction.png` and `-sum.png`; the sum is what path tracing finds.
 pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let size = context.effort([80, 60], [320, 240]);
-    let (samples, trials) = (context.effort(64, 256), context.effort(6, 12));
+    let size = context.effort([80, 60], [160, 120]);
+    let (samples, trials) = (context.effort(64, 96), context.effort(6, 8));
     let mut setup = Setup::builtin(context, SCENE, size)?;
     setup.settings.max_depth = 2;
 
