@@ -16,7 +16,7 @@ pub trait CausticMap<X: Vertex> {
     fn radiance(&self, x: &X) -> X::Spectrum;
 }
 
-/// No caustics: biased, and rays may be short.
+/// No caustics: biased, and rays may be short (where nothing is glossy, or peaks do not count).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoCaustics;
 

@@ -12,8 +12,8 @@ pub trait Observer<X: Vertex> {
         let _ = (length, vertex);
     }
 
-    /// A contribution was added: `eye` segments of the eye path, and `light` segments of light paths (`None`: the sum over all of
-    /// them, or light that the eye path hit itself).
+    /// A contribution was added: `eye` segments of the eye path, and `light` segments of light paths. `None`: light that the eye path
+    /// hit itself. [`RobustIgi`](crate::RobustIgi) reports the sum of all connections of a vertex as `Some(0)`.
     #[inline]
     fn contribution(&mut self, eye: u32, light: Option<u32>, value: X::Spectrum) {
         let _ = (eye, light, value);

@@ -135,7 +135,10 @@ impl Partition {
     pub(crate) fn bounded(&self, g: f32) -> f32 {
         match self.form {
             Form::Geometry(partition) => partition.bounded(g),
-            Form::Balance | Form::Distance => g * self.share_with(g, || 0.0),
+            Form::Balance | Form::Distance => {
+                let share = self.share_with(g, || 0.0);
+                if share > 0.0 { g * share } else { 0.0 }
+            }
         }
     }
 

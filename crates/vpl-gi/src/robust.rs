@@ -51,11 +51,13 @@ pub struct FinalGathering {
 /// so are light vertices which they reach by mirrors and glass alone ([`VirtualPointLight::is_last_chance`](crate::VirtualPointLight::is_last_chance));
 /// light from infinity has `G = 0` and is connected for any `t > 0`.
 ///
-/// **Unbiased** up to `max_depth`, for every partition, with [`Residual::Scatter`] and without a [`CausticMap`]. Threshold 0 is path tracing without next event
+/// **Unbiased** up to `max_depth`, for every partition, with [`Residual::Scatter`] and without a [`CausticMap`], if light paths may have `max_depth - 2`
+/// segments; except for light of Dirac emitters that the camera sees by specular surfaces next to diffuse ones alone (the caustic of a point
+/// light in a mirror, seen directly), which no technique generates. Threshold 0 is path tracing without next event
 /// estimation, infinity instant radiosity.
 ///
 /// **Cost.** Per eye vertex one shading loop over the lights and their shadow rays. Scattered rays end at `sqrt(|cos| / t)` where
-/// [`Partition::reach`] bounds them: in scenes without specular surfaces (and without glossy ones, if peaks count), or with a caustic map.
+/// [`Partition::reach`] bounds them: in scenes without specular surfaces, or with a caustic map; and without glossy ones, too, if [`peaks`](Self::peaks) count.
 ///
 /// **Source.** P0, sections 2 and 3.2. The weight of the technique with `i` light vertices and `l` segments is
 /// `w(l,i) = s(x_(l-i), x_(l-i+1)) prod_(k<l-i) (1 - s(x_k, x_(k+1)))`, `k` from 1, and `w(l,0) = prod_(k<l) (1 - s)`, which the print
@@ -325,12 +327,15 @@ where
         gathers: bool,
         sampler: &mut impl Sampler,
     ) -> S::Spectrum {
-        let longest = if gathers { 0 } else { self.settings.max_depth - length - 1 };
+        let longest_last_chance = self.settings.max_depth - length - 1;
+        let longest = if gathers { 0 } else { longest_last_chance };
         let (scene, lights, settings) = (self.scene, self.lights, self.settings);
         let towards = |wi: Vec3A| self.left_towards(left, vertex, wi);
         let connections = Connections {
             partition: &settings.partition,
             longest,
+            longest_last_chance,
+            mapped: self.caustics.is_some(),
             peaks: settings.peaks,
             left: left.term.is_some().then_some(&towards),
         };
@@ -365,7 +370,10 @@ where
 
     /// How much `vertex` peaks in the direction that was sampled, if that counts.
     fn peak_of(&self, vertex: &S::Vertex<'s>, sample: &ScatterSample<S::Spectrum>) -> f32 {
-        if self.settings.peaks { peak(sample.pdf_solid_angle, vertex.shading_normal().dot(sample.wi)) } else { 1.0 }
+        if !self.settings.peaks || vertex.lambertian().is_some() {
+            return 1.0;
+        }
+        peak(sample.pdf_solid_angle, vertex.shading_normal().dot(sample.wi))
     }
 
     /// The way to the next vertex; nothing if the path ends here.

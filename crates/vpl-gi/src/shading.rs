@@ -13,6 +13,11 @@ pub(crate) struct Connections<'a> {
     pub(crate) partition: &'a Partition,
     /// Longest light paths that count, in segments.
     pub(crate) longest: u32,
+    /// The same for lights that nothing later on the eye path finds.
+    pub(crate) longest_last_chance: u32,
+    /// Whether a caustic map finds what arrives by Dirac deltas: then there are no last chances, and as it knows no directions, peaks of
+    /// lights that are reached so do not count.
+    pub(crate) mapped: bool,
     /// Whether the peaks of scattering functions count as if they were part of the geometry term.
     pub(crate) peaks: bool,
     /// What is left for connections in a direction, if it depends on it.
@@ -20,9 +25,14 @@ pub(crate) struct Connections<'a> {
 }
 
 impl<'a> Connections<'a> {
+    /// Light paths of up to `longest` segments, by the geometry term alone.
+    pub(crate) fn up_to(longest: u32, partition: &'a Partition) -> Self {
+        Self { partition, longest, longest_last_chance: longest, mapped: false, peaks: false, left: None }
+    }
+
     /// All light paths, by the geometry term alone.
     pub(crate) fn all(partition: &'a Partition) -> Self {
-        Self { partition, longest: u32::MAX, peaks: false, left: None }
+        Self::up_to(u32::MAX, partition)
     }
 }
 
@@ -43,11 +53,15 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
     X: Vertex<Spectrum = V::Spectrum>,
     V: Vertex,
 {
-    let &Connections { partition, longest, peaks, left } = connections;
+    let &Connections { partition, longest, longest_last_chance, mapped, peaks, left } = connections;
     let all = lights.as_slice();
-    let is_too_long = |index: usize| longest < lights.longest() && all[index].length > longest;
-    let is_last_chance = |index: usize| lights.any_last_chance() && all[index].is_last_chance;
+    let is_last_chance = |index: usize| !mapped && lights.any_last_chance() && all[index].is_last_chance;
+    let is_too_long = |index: usize| {
+        longest < lights.longest()
+            && all[index].length > if is_last_chance(index) { longest_last_chance } else { longest }
+    };
     let (from, normal) = (x.point().position, facing_normal(x));
+    let is_lambertian = peaks && x.lambertian().is_some();
     let diffuse = if lights.all_lambertian() && left.is_none() { x.lambertian() } else { None };
     for (block, lanes) in lights.lanes().iter().enumerate() {
         if let Some(f) = diffuse {
@@ -76,8 +90,9 @@ pub(crate) fn for_each_unshadowed<S, X, V>(
             }
             let scattered = if peaks && !is_last_chance(index) {
                 let (scattered, pdf) = x.eval_pdf(towards.wi, TransportMode::Radiance);
-                let peaks = peak(pdf, x.shading_normal().dot(towards.wi)) * lights.peak(index, towards.wi);
-                share = partition.share(g * peaks, towards.d2);
+                let at_x = if is_lambertian { 1.0 } else { peak(pdf, x.shading_normal().dot(towards.wi)) };
+                let at_y = if mapped && light.after_specular { 1.0 } else { lights.peak(index, towards.wi) };
+                share = partition.share(g * at_x * at_y, towards.d2);
                 scattered
             } else {
                 x.eval(towards.wi, TransportMode::Radiance)

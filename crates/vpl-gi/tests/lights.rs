@@ -207,7 +207,9 @@ fn nothing_to_light_with() {
     let mut lights = VirtualPointLights::new(1);
     let own = vpl_gi::VirtualPointLight::start(LightKind::Surface(x), Rgb::ONE);
     lights.push(&scene, own);
-    for partition in [Partition::hard(1.0), Partition::soft(1.0), Partition::hard(f32::INFINITY)] {
+    for partition in
+        [Partition::hard(1.0), Partition::soft(1.0), Partition::balance(1.0), Partition::hard(f32::INFINITY)]
+    {
         assert_eq!(unshadowed(&scene, &x, &lights, &partition.unwrap()), Rgb::ZERO);
     }
     assert!(lights.bytes() > 0);

@@ -108,7 +108,7 @@ where
             if vertex.is_connectible() {
                 let longest = settings.max_depth - length - 1;
                 let lights = self.lights.lights();
-                let connections = Connections { longest, ..Connections::all(&everything) };
+                let connections = Connections::up_to(longest, &everything);
                 for_each_unshadowed(self.scene, &vertex, lights, &connections, |light, value| {
                     radiance += self.connect(&vertex, light, throughput * value, observer);
                 });

@@ -221,6 +221,9 @@ impl DeltaStarts {
 /// divided by their number, and `length` counts the segments of its light path. `starts` light paths are traced anew for the
 /// emission points, which photon maps do not store.
 ///
+/// What photons do not tell is taken for not so: [`VirtualPointLight::is_last_chance`] is false, hence some of the light that
+/// point lights send by mirrors alone is lost where the partition is not infinite.
+///
 /// A sparse cloud is made by keeping each photon with a probability, and dividing its flux by it.
 ///
 /// **Source.** P0, section 2: "a very sparse global photon map".

@@ -35,7 +35,8 @@ pub struct VirtualPointLight<V: Vertex> {
     /// What it is.
     pub kind: LightKind<V>,
     /// For [`LightKind::Surface`] the flux that arrives, in W; otherwise one over the density of the start (by area, by solid
-    /// angle if distant) and the probability of its emitter. Over the number of light paths, in any case.
+    /// angle if distant) and the probability of its emitter. Over the number of light paths, except for Dirac emitters that are
+    /// taken once each, where it is one.
     pub scale: V::Spectrum,
     /// Segments of the light path up to here: 0 for its start.
     pub length: u32,
