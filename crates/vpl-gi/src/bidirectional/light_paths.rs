@@ -8,7 +8,8 @@ use scene_core::{Emitter, EmitterChoice, EmitterId, Scene, Spectrum, SurfacePoin
 
 use super::density::{by_area, through_disk};
 use crate::lights::{
-    Edges, LightKind, LightTracing, Start, VirtualPointLight, VirtualPointLights, light_of_start, light_of_vertex,
+    Edges, LightKind, LightTracing, Start, VirtualPointLight, VirtualPointLights, add_start, light_of_start,
+    light_of_vertex,
 };
 
 /// Light paths `y_0 y_1 ..`, ready to be connected to eye paths and to the lens.
@@ -244,11 +245,7 @@ impl<V: Vertex> LightPaths<V> {
         if self.deltas_once {
             return;
         }
-        let weight = 1.0 / (probability * self.lights.paths() as f32);
-        match self.chosen.binary_search_by_key(&emitter, |(id, _)| *id) {
-            Ok(index) => self.chosen[index].1 += weight,
-            Err(index) => self.chosen.insert(index, (emitter, weight)),
-        }
+        add_start(&mut self.chosen, emitter, 1.0 / (probability * self.lights.paths() as f32));
     }
 
     fn push_deltas<S, C>(&mut self, scene: &S, choice: &C)

@@ -11,7 +11,7 @@ use crate::partition::peak;
 
 pub use lanes::geometry_term;
 pub(crate) use lanes::{LANES, Lanes};
-pub(crate) use trace::{Edges, Start, light_of_start, light_of_vertex};
+pub(crate) use trace::{Edges, Start, add_start, light_of_start, light_of_vertex};
 pub use trace::{LightTracing, photon_cloud};
 pub(crate) use vertex::Towards;
 pub use vertex::{LightKind, VirtualPointLight};

@@ -185,6 +185,14 @@ impl Edges {
     }
 }
 
+/// Puts a start at a Dirac emitter together with the others that started there; `weights` is sorted by emitter.
+pub(crate) fn add_start(weights: &mut Vec<(EmitterId, f32)>, emitter: EmitterId, weight: f32) {
+    match weights.binary_search_by_key(&emitter, |(id, _)| *id) {
+        Ok(index) => weights[index].1 += weight,
+        Err(index) => weights.insert(index, (emitter, weight)),
+    }
+}
+
 /// Starts at Dirac emitters, put together.
 struct DeltaStarts {
     /// Emitter and weight, sorted by emitter.
@@ -205,11 +213,7 @@ impl DeltaStarts {
         if self.each_once {
             return;
         }
-        let weight = 1.0 / (probability * self.paths as f32);
-        match self.weights.binary_search_by_key(&emitter, |(id, _)| *id) {
-            Ok(index) => self.weights[index].1 += weight,
-            Err(index) => self.weights.insert(index, (emitter, weight)),
-        }
+        add_start(&mut self.weights, emitter, 1.0 / (probability * self.paths as f32));
     }
 
     fn finish(self) -> Vec<(EmitterId, f32)> {
