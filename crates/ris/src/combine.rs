@@ -1,0 +1,177 @@
+//! Generalised resampling: combining what others selected, for other targets, without bias.
+
+use crate::resampled::Selected;
+use crate::several_sources::finish;
+use crate::stream::{Chosen, Stream};
+use crate::{Float, Resampled, Target};
+
+/// Combines resampled samples with resampling weights that the caller gives.
+///
+/// ```text
+/// w_i = m_i(Y_i) g(Y_i) W_i,     P(Y = Y_i) = w_i / sum_j w_j,     W = 1/g(Y) * sum_j w_j
+/// ```
+///
+/// **Symbols.** `Y_i`, `W_i`: the sample and contribution weight of input `i`; `g`: the receiver's target; `m_i`: weights that
+/// sum to one over all inputs that could have selected `Y_i`.
+///
+/// **Unbiased** if the `W_i` are, and for each `x` with `f(x) != 0` the weights `m_i(x)` of the inputs whose target is positive
+/// at `x` sum to one. The inputs may depend on each other.
+///
+/// **Source.** Lin et al. 2022, equations 21 and 22. [`Pairwise`] chooses the weights; [`balance`] is the costlier choice.
+#[derive(Clone, Copy, Debug)]
+pub struct Combination<X, F = f32> {
+    stream: Stream<X, F>,
+    confidence: F,
+}
+
+impl<X, F: Float> Default for Combination<X, F> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<X, F: Float> Combination<X, F> {
+    /// An empty one.
+    pub const fn new() -> Self {
+        Self { stream: Stream::EMPTY, confidence: F::ZERO }
+    }
+
+    /// Adds an input with the receiver's score `g(Y_i)` and its weight `m_i(Y_i)`. If the sample was moved here by a shift
+    /// mapping, `input.contribution_weight` has to be multiplied by its Jacobian determinant before.
+    #[inline]
+    pub fn add(&mut self, input: Resampled<X, F>, score: F, resampling_weight: F, u: F) {
+        self.confidence += input.confidence;
+        if let Some(Selected { sample, contribution_weight, .. }) = input.selected {
+            let weight = resampling_weight * score * contribution_weight;
+            self.stream.offer(weight, u, || Chosen { sample, score, inverse_density: contribution_weight });
+        }
+    }
+
+    /// The outcome.
+    #[inline]
+    pub fn finish(self) -> Resampled<X, F> {
+        finish(self.stream, self.confidence)
+    }
+}
+
+/// Pairwise weights: each neighbour is weighed against the receiver's own ("canonical") sample alone, in `O(N)`.
+///
+/// ```text
+/// m_i(y) = c_i/C *      C' g_i(y) / (c_c g_c(y) + C' g_i(y))                        for neighbours i
+/// m_c(y) = c_c/C + sum_i  c_i/C * c_c g_c(y) / (c_c g_c(y) + C' g_i(y))             for the canonical sample
+/// ```
+///
+/// **Symbols.** `g_c`, `g_i`: targets of receiver and neighbour; `c_c`, `c_i`: their confidences (numbers of candidates);
+/// `C' = sum_i c_i`, `C = c_c + C'`. At any `y` the weights sum to one, and `m_i(y)` is zero where `g_i(y)` is: what a
+/// neighbour cannot select is not counted for it. The term `c_c/C` is the *defensive* one: the receiver's own sample keeps
+/// at least its share.
+///
+/// **Unbiased** for any neighbours whose choice does not depend on the samples. A neighbour's target has to be the one that it
+/// really selected by, times whatever dropped samples since ([`Resampled::kept_if`]).
+///
+/// **Cost.** Per neighbour the receiver's target at its sample, and its target at the receiver's sample: `2 N` scores against
+/// `N^2` of [`balance`].
+///
+/// **Source.** Bitterli 2022 (*Correlations and reuse for fast and accurate physically based light transport*), section 9.1.3;
+/// Lin et al. 2022, equation 38, for the defensive form.
+///
+/// # Example
+/// ```
+/// use ris::{Pairwise, Proposal, Reservoir};
+/// let here = |x: &f64| *x;
+/// let there = |x: &f64| 1.0 - x;
+/// let mut state = 1_u64;
+/// let mut uniform = || {
+///     state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407); // Knuth's
+///     (state >> 11) as f64 / (1_u64 << 53) as f64
+/// };
+/// let draw = |uniform: &mut dyn FnMut() -> f64| [uniform(), uniform()].map(|x| Proposal { sample: x, density: 1.0 });
+/// let mine = Reservoir::stream(draw(&mut uniform), &here, &mut uniform);
+/// let theirs = Reservoir::stream(draw(&mut uniform), &there, &mut uniform);
+///
+/// let mut pairwise = Pairwise::new(mine, theirs.confidence);
+/// pairwise.add(theirs, &here, &there, uniform());
+/// let picked = pairwise.finish(uniform());
+/// assert_eq!(picked.confidence, 4.0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Pairwise<X, F = f32> {
+    combination: Combination<X, F>,
+    canonical: Resampled<X, F>,
+    /// `c_c / C + ..`, growing with each neighbour.
+    canonical_weight: F,
+    /// `C'`.
+    neighbours: F,
+    /// `C`.
+    total: F,
+}
+
+impl<X, F: Float> Pairwise<X, F> {
+    /// For the receiver's own sample, and neighbours whose confidences will sum to `neighbours`.
+    #[inline]
+    pub fn new(canonical: Resampled<X, F>, neighbours: F) -> Self {
+        let neighbours = neighbours.weight_or_zero();
+        let total = canonical.confidence + neighbours;
+        let canonical_weight = if total > F::ZERO { canonical.confidence / total } else { F::ONE };
+        Self { combination: Combination::new(), canonical, canonical_weight, neighbours, total }
+    }
+
+    /// The part of the pair's weight that is the neighbour's, at a sample with these scores.
+    #[inline]
+    fn neighbour_part(&self, canonical_score: F, neighbour_score: F) -> F {
+        let neighbour = self.neighbours * neighbour_score.weight_or_zero();
+        let canonical = self.canonical.confidence * canonical_score.weight_or_zero();
+        // Where neither could select the sample any split does; it is never asked for then.
+        if neighbour > F::ZERO { neighbour / (neighbour + canonical) } else { F::ZERO }
+    }
+
+    /// Adds a neighbour: `target` is the receiver's, `neighbour_target` the one that the neighbour selected by.
+    #[inline]
+    pub fn add(
+        &mut self,
+        neighbour: Resampled<X, F>,
+        target: &impl Target<X, F>,
+        neighbour_target: &impl Target<X, F>,
+        u: F,
+    ) {
+        if neighbour.confidence.weight_or_zero() == F::ZERO {
+            return;
+        }
+        let share = neighbour.confidence / self.total;
+        if let Some(own) = &self.canonical.selected {
+            let part = self.neighbour_part(own.score, neighbour_target.score(&own.sample));
+            self.canonical_weight += share * (F::ONE - part);
+        }
+        let (score, weight) = match &neighbour.selected {
+            Some(theirs) => {
+                let score = target.score(&theirs.sample);
+                (score, share * self.neighbour_part(score, theirs.score))
+            }
+            None => (F::ZERO, F::ZERO),
+        };
+        self.combination.add(neighbour, score, weight, u);
+    }
+
+    /// Adds the receiver's own sample, and returns the outcome.
+    #[inline]
+    pub fn finish(mut self, u: F) -> Resampled<X, F> {
+        let score = self.canonical.selected.as_ref().map_or(F::ZERO, |own| own.score);
+        self.combination.add(self.canonical, score, self.canonical_weight, u);
+        self.combination.finish()
+    }
+}
+
+/// The balance heuristic over all inputs, `m_i(y) = c_i g_i(y) / sum_j c_j g_j(y)`, at a sample with these scores.
+///
+/// The oracle of [`Pairwise`]: less variance in general, and quadratic cost, for each sample has to be scored by every
+/// input's target. **Source.** Lin et al. 2022, equation 36.
+///
+/// ```
+/// let weights = [0, 1].map(|i| ris::balance(i, &[2.0, 1.0], &[0.5, 3.0]));
+/// assert_eq!(weights, [0.25, 0.75]);
+/// ```
+pub fn balance<F: Float>(input: usize, confidences: &[F], scores: &[F]) -> F {
+    let term = |i: usize| confidences[i] * scores[i].weight_or_zero();
+    let sum: F = (0..confidences.len().min(scores.len())).map(term).sum();
+    if sum > F::ZERO { term(input) / sum } else { F::ZERO }
+}

@@ -1,0 +1,83 @@
+//! What resampling returns: a sample, and the weight that makes estimates with it unbiased.
+
+use core::ops::{Add, Mul};
+
+use crate::Float;
+
+/// A selected sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Selected<X, F = f32> {
+    /// The sample `Y`.
+    pub sample: X,
+    /// `g(Y)`, of the target it was selected for.
+    pub score: F,
+    /// The unbiased contribution weight `W`: `E[W | Y = y]` is one over the density of `Y`.
+    pub contribution_weight: F,
+}
+
+/// The outcome of resampling.
+///
+/// ```text
+/// W = 1/g(Y) * 1/M sum_j g(X_j)/p(X_j),        E[f(Y) W] = integral of f
+/// ```
+///
+/// **Symbols.** `Y`: the selected sample; `g`: the target; `p`: the density of the candidates `X_j`; `M`: their number, kept
+/// as the *confidence* for later combinations.
+///
+/// There may be no sample: if all candidates had weight zero, or there were none. Estimates are then zero.
+///
+/// A `Resampled` is itself a candidate for the next resampling, with `W` in place of `1/p`:
+/// [`Reservoir::merge`](crate::Reservoir::merge), [`Pairwise`](crate::Pairwise).
+///
+/// **Source.** P3, equation 1; Lin, Kettunen, Bitterli, Pantaleoni, Yuksel, Wyman 2022 (*Generalized resampled importance
+/// sampling*), section 4, for the name of `W`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resampled<X, F = f32> {
+    /// The sample that was selected, if any.
+    pub selected: Option<Selected<X, F>>,
+    /// The number of candidates that it stands for.
+    pub confidence: F,
+}
+
+impl<X, F: Float> Resampled<X, F> {
+    /// No sample, of no candidates.
+    pub const EMPTY: Self = Self { selected: None, confidence: F::ZERO };
+
+    /// The sample `Y`, if any.
+    #[inline]
+    pub fn sample(&self) -> Option<&X> {
+        self.selected.as_ref().map(|selected| &selected.sample)
+    }
+
+    /// `W`; zero if there is no sample.
+    #[inline]
+    pub fn contribution_weight(&self) -> F {
+        self.selected.as_ref().map_or(F::ZERO, |selected| selected.contribution_weight)
+    }
+
+    /// `f(Y) W`, an estimate of the integral of `f`; `V::default()` (zero) if there is no sample, and `f` is not asked.
+    #[inline]
+    pub fn estimate<V: Default + Mul<F, Output = V> + Add<Output = V>>(&self, f: impl FnOnce(&X) -> V) -> V {
+        match &self.selected {
+            Some(selected) => f(&selected.sample) * selected.contribution_weight,
+            None => V::default(),
+        }
+    }
+
+    /// The same with at most this confidence: how much of its history later combinations believe. Unbiased with any
+    /// bound that does not depend on the sample.
+    #[inline]
+    #[must_use]
+    pub fn with_confidence_at_most(self, bound: F) -> Self {
+        Self { confidence: self.confidence.at_most(bound), ..self }
+    }
+
+    /// The sample and its weight multiplied by what else decides whether it counts, such as visibility: with zero the sample
+    /// is dropped and the confidence stays. The target is from here on `g` times that factor, and whoever weighs this
+    /// sample against others has to count the factor in.
+    #[inline]
+    #[must_use]
+    pub fn kept_if(self, keep: impl FnOnce(&X) -> bool) -> Self {
+        Self { selected: self.selected.filter(|selected| keep(&selected.sample)), ..self }
+    }
+}
