@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use lichtwerk::estimators::{CameraEstimator, FirstEvent, PathTracer};
+use lichtwerk::estimators::{CameraEstimator, FirstEvent, NextEvent, OwnSampling, PathTracer};
 use lichtwerk_benches::sized;
 use mis_heuristics::Power;
 use qmc_sampling::{OwenSobol, Sampler, SamplerFamily};
@@ -35,8 +35,8 @@ fn path_tracing(criterion: &mut Criterion) {
     for (description, max_depth) in [(cornell_box(), 6), (interior(), 6), (interior(), u32::MAX)] {
         let scene = sized(description, WIDTH, HEIGHT).expect("a builtin scene");
         let estimator = PathTracer {
-            heuristic: Power::TWO,
-            choice: PowerChoice::new(scene.emitters()),
+            direct: NextEvent { heuristic: Power::TWO, choice: PowerChoice::new(scene.emitters()) },
+            scattering: OwnSampling,
             max_depth,
             roulette: RussianRoulette::PathThroughput { from_length: 4 },
             first_event: FirstEvent::Any,

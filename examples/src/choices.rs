@@ -72,6 +72,8 @@ pub enum LightSelection {
     /// In proportion to their power.
     #[default]
     Power,
+    /// By resampling candidates, as with `--direct ris`; where that does not apply, in proportion to their power.
+    Ris,
 }
 
 /// A choice of `scene-core` by name.
@@ -88,7 +90,7 @@ impl AnyChoice {
     pub fn new<E: Emitter>(selection: LightSelection, emitters: &[E]) -> Self {
         match selection {
             LightSelection::Uniform => Self::Uniform(UniformChoice::new(emitters.len())),
-            LightSelection::Power => Self::Power(PowerChoice::new(emitters)),
+            LightSelection::Power | LightSelection::Ris => Self::Power(PowerChoice::new(emitters)),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! - [`render`]: the loop over pixels, passes and threads.
 //! - [`choices`]: heuristics and light selection by name.
 //! - [`light_paths`]: light paths by name.
+//! - [`resampling`]: resampling by name.
 //! - [`samplers`]: samplers by name.
 //! - [`metrics`]: how far an image is from another.
 //! - [`experiments`]: figures and claims of papers, measured.
@@ -18,4 +19,5 @@ pub mod metrics;
 pub mod output;
 pub mod program;
 pub mod render;
+pub mod resampling;
 pub mod samplers;

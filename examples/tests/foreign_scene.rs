@@ -10,7 +10,7 @@ mod scene;
 use core::ops::ControlFlow;
 
 use estimator_checks::{Check, Moments, Outcome, Suite, same_mean};
-use lichtwerk::estimators::{FirstEvent, LightTracer, PathTracer};
+use lichtwerk::estimators::{FirstEvent, LightTracer, NextEvent, OwnSampling, PathTracer};
 use lichtwerk::render::{Budget, Job};
 use mis_heuristics::Balance;
 use qmc_sampling::Independent;
@@ -36,11 +36,11 @@ fn balls() -> Balls {
     Balls { balls, lamps: vec![Lamp::Sky { radiance: 0.7, radius: 3.0 }, lamp], camera }
 }
 
-fn path_tracer(scene: &Balls, first_event: FirstEvent) -> PathTracer<Balance, UniformChoice> {
+fn path_tracer(scene: &Balls, first_event: FirstEvent) -> PathTracer<NextEvent<Balance, UniformChoice>> {
     let roulette = RussianRoulette::PathThroughput { from_length: 4 };
     PathTracer {
-        heuristic: Balance,
-        choice: UniformChoice::new(scene.lamps.len()),
+        direct: NextEvent { heuristic: Balance, choice: UniformChoice::new(scene.lamps.len()) },
+        scattering: OwnSampling,
         max_depth: 12,
         roulette,
         first_event,
@@ -53,7 +53,8 @@ fn blocks(scene: &Balls, by_light: bool) -> Vec<Moments> {
     for seed in 0..IMAGES {
         let samplers = Independent::new(seed + if by_light { 1000 } else { 0 });
         let camera = path_tracer(scene, if by_light { FirstEvent::SpecularOnly } else { FirstEvent::Any });
-        let light = LightTracer { choice: camera.choice, max_depth: camera.max_depth, roulette: camera.roulette };
+        let light =
+            LightTracer { choice: camera.direct.choice, max_depth: camera.max_depth, roulette: camera.roulette };
         let light = by_light.then_some(&light);
         let (filter, budget) = (Filter::BOX, Budget::Samples(8));
         let job = Job { scene, samplers: &samplers, camera: &camera, light, filter, budget, threads: 1 };

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use estimator_checks::{BatchMeans, Suite};
 use lichtwerk::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use lichtwerk::estimators::{FirstEvent, NoLightPaths, PathTracer};
+use lichtwerk::estimators::{FirstEvent, NextEvent, NoLightPaths, OwnSampling, PathTracer};
 use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName, estimate};
 use lichtwerk::render::{Budget, Job};
 use lichtwerk_tests::planted::{Liar, OneMode, Unnormalised};
@@ -244,8 +244,13 @@ where
 {
     means_of(name, Effort::QUICK, |seed| {
         let roulette = RussianRoulette::Never;
-        let camera =
-            PathTracer { heuristic, choice: choice.clone(), max_depth: 6, roulette, first_event: FirstEvent::Any };
+        let camera = PathTracer {
+            direct: NextEvent { heuristic, choice: choice.clone() },
+            scattering: OwnSampling,
+            max_depth: 6,
+            roulette,
+            first_event: FirstEvent::Any,
+        };
         let job = Job {
             scene,
             samplers: &Independent::new(seed),

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use estimator_checks::{BatchMeans, Suite};
 use lichtwerk::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use lichtwerk::estimators::{FirstEvent, NoLightPaths, PathTracer};
+use lichtwerk::estimators::{FirstEvent, NextEvent, NoLightPaths, OwnSampling, PathTracer};
 use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName};
 use lichtwerk::render::{Budget, Job};
 use lichtwerk_tests::planted::{FewDimensions, PlaceInImage};
@@ -59,8 +59,11 @@ fn path_by<F: SamplerFamily>(name: &str, family: impl Fn(u64) -> F) -> BatchMean
     let scene = scene();
     let settings = settings(EstimatorName::Path, SamplerName::Sobol);
     let camera = PathTracer {
-        heuristic: AnyHeuristic::Power,
-        choice: AnyChoice::new(LightSelection::Power, scene.emitters()),
+        direct: NextEvent {
+            heuristic: AnyHeuristic::Power,
+            choice: AnyChoice::new(LightSelection::Power, scene.emitters()),
+        },
+        scattering: OwnSampling,
         max_depth: settings.max_depth,
         roulette: RussianRoulette::PathThroughput { from_length: settings.rr_depth - 1 },
         first_event: FirstEvent::Any,

@@ -2,8 +2,12 @@
 
 mod ambient_occlusion;
 mod bidirectional;
+mod direct;
 mod light;
 mod path;
+mod resampled;
+mod restir;
+mod scattering;
 mod virtual_lights;
 
 use scene_core::{Ray, Scene, Spectrum, Vertex};
@@ -12,8 +16,15 @@ use qmc_sampling::Sampler;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use bidirectional::BidirectionalPaths;
+pub use direct::{DirectLight, LightAlone, NextEvent, Scattered, ScatteringAlone};
 pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
+pub use resampled::{
+    EnvironmentSampling, LightCandidate, LightPoint, LightSource, LightTarget, Place, PointTarget, ResampledDirect,
+    SourceMix, TargetName, VisibilityProbes, measure_cost, reusable,
+};
+pub use restir::RestirDirect;
+pub use scattering::{Directions, OwnSampling, ResampledScattering, ScatterSampling};
 pub use virtual_lights::VirtualLights;
 
 /// What a camera ray hit first, for auxiliary images.

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
 use crate::light_paths::LightPathSettings;
+use crate::resampling::ResamplingSettings;
 use crate::samplers::SamplerName;
 
 /// Renders scenes with the estimators of the Lichtwerk crates, and measures them.
@@ -129,6 +130,9 @@ pub struct RenderArguments {
     /// Light paths.
     #[command(flatten)]
     pub light_paths: LightPathSettings,
+    /// Resampling.
+    #[command(flatten)]
+    pub resampling: ResamplingSettings,
 }
 
 /// Arguments of `diff`.

@@ -13,13 +13,15 @@ use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 use super::{Failure, RenderArguments, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
-    AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NoLightPaths, PathTracer, VirtualLights,
+    AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NextEvent, NoLightPaths, OwnSampling, PathTracer,
+    VirtualLights,
 };
 use crate::light_paths::LightPathSettings;
 use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
 use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared};
+use crate::resampling::{DirectName, ResamplingSettings};
 use crate::samplers::{AnyFamily, SamplerName};
 
 /// The estimators.
@@ -40,6 +42,8 @@ pub enum EstimatorName {
     InstantRadiosity,
     /// Bidirectional path tracing, weighted by the heuristic.
     Bdpt,
+    /// Emission and direct light, with samples that neighbouring pixels share without bias.
+    RestirDirect,
 }
 
 impl EstimatorName {
@@ -97,9 +101,25 @@ pub struct RenderSettings {
     pub ao_distance: f32,
     /// Light paths, for the estimators that connect to them.
     pub light_paths: LightPathSettings,
+    /// Resampling of direct light and of directions.
+    pub resampling: ResamplingSettings,
 }
 
 impl RenderSettings {
+    /// Whether paths are traced in the usual way, without any resampling.
+    fn is_plain(&self) -> bool {
+        self.direct_settings().is_plain()
+    }
+
+    /// The settings of resampling; `--lights ris` asks for it too.
+    fn direct_settings(&self) -> ResamplingSettings {
+        let mut settings = self.resampling.clone();
+        if self.lights == LightSelection::Ris {
+            settings.direct = DirectName::Ris;
+        }
+        settings
+    }
+
     /// Path tracing with the scene's own filter and depth.
     pub fn new(budget: Budget) -> Self {
         Self {
@@ -115,6 +135,7 @@ impl RenderSettings {
             filter: Filter::BOX,
             ao_distance: f32::INFINITY,
             light_paths: LightPathSettings::default(),
+            resampling: ResamplingSettings::default(),
         }
     }
 }
@@ -159,19 +180,41 @@ fn estimate_with<S: Scene + Sync>(
     let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
     let (filter, budget, threads) = (settings.filter, settings.budget, settings.threads);
     let mut path = PathTracer {
-        heuristic: settings.heuristic,
-        choice: choice.clone(),
+        direct: NextEvent { heuristic: settings.heuristic, choice: choice.clone() },
+        scattering: OwnSampling,
         max_depth: settings.max_depth,
         roulette,
         first_event: FirstEvent::Any,
     };
+    if settings.estimator == EstimatorName::Direct {
+        path.max_depth = path.max_depth.min(2);
+    }
+    let resampling = &settings.resampling;
     match settings.estimator {
+        EstimatorName::Path | EstimatorName::Direct if settings.is_plain() => {
+            Job { scene, samplers, camera: &path, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
+        }
         EstimatorName::Path | EstimatorName::Direct => {
-            if settings.estimator == EstimatorName::Direct {
-                path.max_depth = path.max_depth.min(2);
-            }
-            let light = None::<&NoLightPaths>;
-            Job { scene, samplers, camera: &path, light, filter, budget, threads }.render(observe)
+            let resampling = settings.direct_settings();
+            let probes = resampling.probes(scene);
+            let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
+            let camera = PathTracer {
+                direct: resampling.direct(settings.heuristic, choice, resampled),
+                scattering: resampling.scattering(scene),
+                max_depth: path.max_depth,
+                roulette,
+                first_event: FirstEvent::Any,
+            };
+            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
+        }
+        EstimatorName::RestirDirect => {
+            let probes = resampling.probes(scene);
+            let direct = resampling.resampled(scene, samplers, probes.as_ref())?;
+            let camera = resampling.restir(direct);
+            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
         }
         EstimatorName::Light => {
             path.first_event = FirstEvent::SpecularOnly;
@@ -294,6 +337,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         rr_depth: arguments.rr_depth,
         filter,
         light_paths: arguments.light_paths.clone(),
+        resampling: arguments.resampling.clone(),
         ao_distance: arguments.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
     };
     let mut watch = Watch::new(arguments, &settings, &name);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use qmc_sampling::{Interleaved, Sampler, SamplerFamily};
 use rayon::prelude::*;
 use scene_core::film::{Film, FilmError, FilmTile, Filter, Pixel, SplatBuffer};
-use scene_core::{Counting, Ray, RayCounts, Scene, Sensor, Spectrum, Vertex};
+use scene_core::{Counting, Ray, RayCounts, Scene, Sensor, SensorRay, Spectrum, Vertex};
 
 use super::{LIGHT_STREAM, TILE_SIZE};
 use crate::estimators::{CameraEstimator, FirstHit};
@@ -54,16 +54,27 @@ impl<S: Scene + Sync, F: SamplerFamily> PassContext<'_, S, F> {
         index: u64,
         radiance: impl FnOnce(Ray, &mut F::Sampler) -> (C::Spectrum, Option<FirstHit>),
     ) {
-        let mut sampler = self.samplers.sampler(self.stream([x, y]), index);
-        // The first pair of numbers is the place in the pixel, also of sequences that run through the image.
-        let [dx, dy] = self.filter.sample(sampler.next_2d());
-        let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
-        let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
+        let (mut sampler, ray) = self.eye_ray(scene, [x, y], index);
         let (radiance, first_hit) = radiance(ray.ray, &mut sampler);
         pixel.add((radiance * ray.weight).to_rgb());
         if let Some(hit) = first_hit {
             pixel.add_aov(hit.albedo, hit.normal, hit.depth);
         }
+    }
+
+    /// The ray of sample number `index` of a pixel, and the sampler from which its numbers came.
+    pub fn eye_ray<C: Scene>(&self, scene: &C, [x, y]: [u32; 2], index: u64) -> (F::Sampler, SensorRay) {
+        let mut sampler = self.sampler([x, y], index);
+        // The first pair of numbers is the place in the pixel, also of sequences that run through the image.
+        let [dx, dy] = self.filter.sample(sampler.next_2d());
+        let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
+        let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
+        (sampler, ray)
+    }
+
+    /// The sampler of sample number `index` of a pixel, from its first number on.
+    pub fn sampler(&self, place: [u32; 2], index: u64) -> F::Sampler {
+        self.samplers.sampler(self.stream(place), index)
     }
 
     /// The stream of a pixel.

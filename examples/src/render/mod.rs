@@ -23,7 +23,7 @@ pub use camera::{CameraPass, PassContext, PassCounts, Shared, Sharing, SharingEs
 use crate::estimators::{LightEstimator, NoLightPaths};
 
 /// Side of the squares of pixels that threads take.
-const TILE_SIZE: u32 = 16;
+pub const TILE_SIZE: u32 = 16;
 /// Number of light paths that one task traces.
 const LIGHT_PATHS_PER_TASK: u64 = 4096;
 /// Number of such tasks whose splats wait in memory at once.
@@ -101,6 +101,9 @@ pub enum RenderError {
     /// The image's size again: a sequence through all of it does not go that far.
     #[error("the sampler cannot be used: {0}")]
     Sampler(#[from] SequenceError),
+    /// The costs of resampling could not be measured.
+    #[error("the robust number of candidates cannot be measured: {0}; give one with --candidates")]
+    Cost(#[from] ris::CostError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

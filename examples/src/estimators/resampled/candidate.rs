@@ -1,0 +1,37 @@
+//! Candidates: light that may arrive at a vertex.
+
+use scene_core::{DirectSample, EmitterId, Ray, Scene, TransportMode, Vertex};
+
+/// Light of an emitter that arrives at a vertex unless something is in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightCandidate<S> {
+    /// Whose light.
+    pub emitter: EmitterId,
+    /// The light.
+    pub light: DirectSample<S>,
+    /// Whether a ray has already come through.
+    pub is_seen: bool,
+}
+
+impl<S: scene_core::Spectrum> LightCandidate<S> {
+    /// What the vertex scatters of it, unoccluded: `f cos L_e`.
+    #[inline]
+    pub fn value<V: Vertex<Spectrum = S>>(&self, vertex: &V) -> S {
+        vertex.eval(self.light.wi, TransportMode::Radiance) * self.light.radiance
+    }
+
+    /// The shadow ray.
+    #[inline]
+    pub fn shadow_ray<V: Vertex>(&self, vertex: &V) -> Ray {
+        match &self.light.at {
+            Some((at, _)) => vertex.point().ray_to(at),
+            None => vertex.spawn_ray(self.light.wi),
+        }
+    }
+
+    /// Whether nothing is in between.
+    #[inline]
+    pub fn is_visible<C: Scene<Spectrum = S>, V: Vertex>(&self, scene: &C, vertex: &V) -> bool {
+        self.is_seen || !scene.occluded(&self.shadow_ray(vertex))
+    }
+}
