@@ -1,5 +1,6 @@
 //! Scenes that need no file: generated here, so that everything runs with no download.
 
+mod blob;
 mod conference;
 mod cornell_box;
 mod finish;
@@ -7,14 +8,18 @@ mod form;
 mod furnace;
 mod furniture;
 mod interior;
+mod noise;
 mod office;
 mod plane;
 mod shapes;
+mod sky;
 mod solids;
+mod sphere_row;
 mod variety;
 
 use crate::reference::SceneDescription;
 
+pub use blob::{blob, blob_environment, blob_under};
 pub use conference::conference;
 pub use cornell_box::cornell_box;
 pub use furnace::{furnace, furnace_box};
@@ -22,6 +27,8 @@ pub use interior::interior;
 pub use office::office;
 pub use plane::{plane_light, plane_point};
 pub use shapes::SceneBuilder;
+pub use sky::sky_image;
+pub use sphere_row::sphere_row;
 
 /// A builtin scene.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +72,21 @@ impl Builtin {
         },
         Self { name: "plane-light", about: "a light that stands upright on a plane", make: plane_light },
         Self { name: "plane-point", about: "a point light closely over a plane", make: plane_point },
+        Self {
+            name: "blob",
+            about: "a rugged object of 150 thousand triangles, glossy and diffuse, under two area lights",
+            make: blob,
+        },
+        Self {
+            name: "blob-environment",
+            about: "the same under two area lights and a sky with a small sun",
+            make: blob_environment,
+        },
+        Self {
+            name: "sphere-row",
+            about: "four spheres (diffuse, Cook-Torrance, rough gold, Phong) in uniform light",
+            make: sphere_row,
+        },
     ];
 
     /// The builtin scene of this name.
