@@ -130,8 +130,10 @@ impl<X, F: Float> Reservoir<X, F> {
     pub fn finish(self) -> Resampled<X, F> {
         let (sum, candidates) = (self.stream.weight_sum, self.candidates);
         let selected = self.stream.chosen.map(|Chosen { sample, score, inverse_density }| {
-            // A single candidate is importance sampling, without the detour by way of the target and its rounding.
-            let contribution_weight = if candidates == F::ONE { inverse_density } else { sum / (candidates * score) };
+            // A single candidate is importance sampling, without the detour by way of the target and its rounding. Confidences
+            // that add up to one may be several candidates: their sum of weights is another one.
+            let single = candidates == F::ONE && sum == score * inverse_density;
+            let contribution_weight = if single { inverse_density } else { sum / (candidates * score) };
             Selected { sample, score, contribution_weight }
         });
         Resampled { selected, confidence: candidates }
