@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use crate::resampled::{Resampled, Selected};
 use crate::select::{AliasTable, PrefixSums, Select};
+use crate::stream::{candidate_weight, contribution_weight};
 use crate::{Float, Proposal, Target};
 
 /// A set of candidates with a table to select from them: one sample, or as many as one likes.
@@ -67,7 +68,7 @@ impl<X, F: Float, T: Table<F>> Batch<X, F, T> {
             Selected { sample, score, contribution_weight: F::ONE / density }
         };
         let candidates: Vec<_> = candidates.into_iter().map(score).collect();
-        let table = T::build(candidates.iter().map(|x| x.score * x.contribution_weight));
+        let table = T::build(candidates.iter().map(|x| candidate_weight(x.score, x.contribution_weight)));
         Self { candidates, table }
     }
 
@@ -90,9 +91,12 @@ impl<X, F: Float, T: Table<F>> Batch<X, F, T> {
     pub fn select(&self, u: F) -> Resampled<&X, F> {
         let confidence = F::from_f64(self.len() as f64);
         let selected = self.table.select(u).map(|index| {
-            let Selected { sample, score, contribution_weight } = &self.candidates[index];
-            let contribution_weight =
-                if self.len() == 1 { *contribution_weight } else { self.table.sum() / (confidence * *score) };
+            let Selected { sample, score, contribution_weight: inverse_density } = &self.candidates[index];
+            let contribution_weight = if self.len() == 1 {
+                *inverse_density
+            } else {
+                contribution_weight(self.table.sum(), confidence, *score)
+            };
             Selected { sample, score: *score, contribution_weight }
         });
         Resampled { selected, confidence }

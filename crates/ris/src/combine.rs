@@ -1,8 +1,8 @@
 //! Generalised resampling: combining what others selected, for other targets, without bias.
 
 use crate::resampled::Selected;
-use crate::several_sources::finish;
-use crate::stream::{Chosen, Stream};
+use crate::several_sources::{finish, share};
+use crate::stream::{Chosen, Stream, candidate_weight};
 use crate::{Float, Resampled, Target};
 
 /// Combines resampled samples with resampling weights that the caller gives.
@@ -40,9 +40,9 @@ impl<X, F: Float> Combination<X, F> {
     /// mapping, `input.contribution_weight` has to be multiplied by its Jacobian determinant before.
     #[inline]
     pub fn add(&mut self, input: Resampled<X, F>, score: F, resampling_weight: F, u: F) {
-        self.confidence += input.confidence;
+        self.confidence += input.confidence.weight_or_zero();
         if let Some(Selected { sample, contribution_weight, .. }) = input.selected {
-            let weight = resampling_weight * score * contribution_weight;
+            let weight = candidate_weight(score, contribution_weight) * resampling_weight;
             self.stream.offer(weight, u, || Chosen { sample, score, inverse_density: contribution_weight });
         }
     }
@@ -66,8 +66,12 @@ impl<X, F: Float> Combination<X, F> {
 /// neighbour cannot select is not counted for it. The term `c_c/C` is the *defensive* one: the receiver's own sample keeps
 /// at least its share.
 ///
-/// **Unbiased** for any neighbours whose choice does not depend on the samples. A neighbour's target has to be the one that it
-/// really selected by, times whatever dropped samples since ([`Resampled::kept_if`]).
+/// **Unbiased** for any neighbours, if
+/// - their choice and all confidences do not depend on the samples, the receiver's confidence is positive, and the neighbours'
+///   sum up to what [`new`](Self::new) was told,
+/// - the receiver alone would be unbiased: `f != 0` implies `g_c > 0` and a positive density of its candidates,
+/// - a neighbour's target is the one that it really selected by, times whatever dropped samples since
+///   ([`Resampled::kept_if`]), and zero where its candidates have density zero: what it claims to be able to select it can.
 ///
 /// **Cost.** Per neighbour the receiver's target at its sample, and its target at the receiver's sample: `2 N` scores against
 /// `N^2` of [`balance`].
@@ -100,8 +104,8 @@ pub struct Pairwise<X, F = f32> {
     canonical: Resampled<X, F>,
     /// `c_c / C + ..`, growing with each neighbour.
     canonical_weight: F,
-    /// `C'`.
-    neighbours: F,
+    /// `c_c / C'`.
+    odds: F,
     /// `C`.
     total: F,
 }
@@ -111,18 +115,26 @@ impl<X, F: Float> Pairwise<X, F> {
     #[inline]
     pub fn new(canonical: Resampled<X, F>, neighbours: F) -> Self {
         let neighbours = neighbours.weight_or_zero();
+        let canonical = Resampled { confidence: canonical.confidence.weight_or_zero(), ..canonical };
         let total = canonical.confidence + neighbours;
         let canonical_weight = if total > F::ZERO { canonical.confidence / total } else { F::ONE };
-        Self { combination: Combination::new(), canonical, canonical_weight, neighbours, total }
+        let odds = if neighbours > F::ZERO { canonical.confidence / neighbours } else { F::ZERO };
+        Self { combination: Combination::new(), canonical, canonical_weight, odds, total }
     }
 
     /// The part of the pair's weight that is the neighbour's, at a sample with these scores.
     #[inline]
     fn neighbour_part(&self, canonical_score: F, neighbour_score: F) -> F {
-        let neighbour = self.neighbours * neighbour_score.weight_or_zero();
-        let canonical = self.canonical.confidence * canonical_score.weight_or_zero();
+        let (neighbour, canonical) = (neighbour_score.weight_or_zero(), canonical_score.weight_or_zero());
         // Where neither could select the sample any split does; it is never asked for then.
-        if neighbour > F::ZERO { neighbour / (neighbour + canonical) } else { F::ZERO }
+        if neighbour == F::ZERO {
+            F::ZERO
+        } else if canonical == F::ZERO || self.odds == F::ZERO {
+            F::ONE
+        } else {
+            // The quotient of scores may overflow, and rightly gives zero then; their products with confidences must not.
+            F::ONE / (F::ONE + canonical / neighbour * self.odds)
+        }
     }
 
     /// Adds a neighbour: `target` is the receiver's, `neighbour_target` the one that the neighbour selected by.
@@ -171,7 +183,7 @@ impl<X, F: Float> Pairwise<X, F> {
 /// assert_eq!(weights, [0.25, 0.75]);
 /// ```
 pub fn balance<F: Float>(input: usize, confidences: &[F], scores: &[F]) -> F {
-    let term = |i: usize| confidences[i] * scores[i].weight_or_zero();
-    let sum: F = (0..confidences.len().min(scores.len())).map(term).sum();
-    if sum > F::ZERO { term(input) / sum } else { F::ZERO }
+    // Scaled, so that no product overflows.
+    let largest = scores.iter().map(|score| score.weight_or_zero()).fold(F::ZERO, |a, b| if b > a { b } else { a });
+    share(input, || confidences.iter().zip(scores).map(|(&c, &g)| c * (g.weight_or_zero() / largest)))
 }

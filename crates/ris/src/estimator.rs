@@ -17,6 +17,8 @@ use crate::{Budget, Float, Reservoir, Source, Target, Uniform};
 /// **Unbiased** if `f(x) != 0` implies `g(x) > 0` and `p(x) > 0`. With `M = 1` it is importance sampling, bit for bit: the
 /// target is then never asked, so that only `p > 0` matters.
 ///
+/// **Bad input.** As [`Reservoir`]'s; with `M = 1`, too, a candidate whose density is zero or NaN adds nothing.
+///
 /// **Cost.** `N (M T_X + T_Y)`, with `T_X` for drawing a candidate and evaluating `g`, `T_Y` for evaluating `f`.
 ///
 /// **Source.** P3, section 4.
@@ -73,7 +75,10 @@ impl Ris {
             let candidates = Budget::round(self.budget.candidates, uniform);
             if candidates == 1 {
                 if let Some(proposal) = source.propose(uniform) {
-                    add(&proposal.sample, F::ONE / proposal.density * part);
+                    let inverse_density = (F::ONE / proposal.density).weight_or_zero();
+                    if inverse_density > F::ZERO {
+                        add(&proposal.sample, inverse_density * part);
+                    }
                 }
                 continue;
             }

@@ -16,7 +16,7 @@ pub enum Objective<const C: usize> {
     /// The sum of the components with these factors: ones give the trace, the weights of luminance that of luminance. Equation 3 is then
     /// exact, and signs count.
     Weighted([f64; C]),
-    /// The Euclidean norm of the variance itself, minimised numerically.
+    /// The Euclidean norm of the variance itself, minimised numerically over `M` up to `e^20`.
     NormOfVariance,
 }
 

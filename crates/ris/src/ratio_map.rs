@@ -44,14 +44,15 @@ impl<const C: usize> RatioMap<C> {
 
     /// The model of a pixel; `None` outside of the map.
     pub fn pixel_mut(&mut self, x: usize, y: usize) -> Option<&mut VarianceModel<C>> {
-        if x < self.width { self.models.get_mut(y * self.width + x) } else { None }
+        if x < self.width && y < self.height { self.models.get_mut(y * self.width + x) } else { None }
     }
 
     /// The model of the square of pixels up to `radius` around one; without candidates outside of the map.
     pub fn pooled(&self, x: usize, y: usize, radius: usize) -> VarianceModel<C> {
         let mut sum = VarianceModel::new();
-        let range =
-            |center: usize, len: usize| center.saturating_sub(radius)..len.min(center.saturating_add(radius + 1));
+        let range = |center: usize, len: usize| {
+            center.saturating_sub(radius)..len.min(center.saturating_add(radius).saturating_add(1))
+        };
         for row in range(y, self.height) {
             for column in range(x, self.width) {
                 sum.merge(&self.models[row * self.width + column]);

@@ -65,16 +65,15 @@ impl<X, F: Float> Resampled<X, F> {
     }
 
     /// The same with at most this confidence: how much of its history later combinations believe. Unbiased with any
-    /// bound that does not depend on the sample.
+    /// bound that does not depend on the sample; a bound that is negative or NaN is zero.
     #[inline]
     #[must_use]
     pub fn with_confidence_at_most(self, bound: F) -> Self {
-        Self { confidence: self.confidence.at_most(bound), ..self }
+        Self { confidence: self.confidence.at_most(if bound > F::ZERO { bound } else { F::ZERO }), ..self }
     }
 
-    /// The sample and its weight multiplied by what else decides whether it counts, such as visibility: with zero the sample
-    /// is dropped and the confidence stays. The target is from here on `g` times that factor, and whoever weighs this
-    /// sample against others has to count the factor in.
+    /// Drops the sample unless it is kept by what the target left out, such as visibility; the confidence stays. The target is
+    /// from here on `g` times that indicator, and whoever weighs this sample against others has to count it in.
     #[inline]
     #[must_use]
     pub fn kept_if(self, keep: impl FnOnce(&X) -> bool) -> Self {

@@ -1,7 +1,7 @@
 //! Streaming resampling in constant memory.
 
 use crate::resampled::{Resampled, Selected};
-use crate::stream::{Chosen, Stream};
+use crate::stream::{Chosen, Stream, candidate_weight, contribution_weight};
 use crate::{Float, OneNumber, Proposal, Target, Uniform};
 
 /// A reservoir: candidates pass through, one stays, and the estimate is unbiased.
@@ -18,9 +18,13 @@ use crate::{Float, OneNumber, Proposal, Target, Uniform};
 ///
 /// **Cost.** One evaluation of `g` and `p` per candidate, three multiplications, one comparison; memory for one sample.
 ///
-/// **Bad input.** Weights that are zero, negative, infinite or NaN count as zero: the candidate counts among the `M` and is
-/// never selected. With no positive weight there is no sample and the estimate is zero. A sum of weights beyond the
-/// largest number stays there (the estimate is then too small).
+/// **Bad input.** Scores and weights that are zero, negative, infinite or NaN count as zero: the candidate counts among the `M`
+/// and is never selected. With no positive weight there is no sample and the estimate is zero. A sum of weights, or a
+/// contribution weight, beyond the largest number stays there (the estimate is then too small); weights below the smallest one
+/// are zero. Where `u` is not below one, or NaN, the sample that is there stays.
+///
+/// **Precision.** With `f32` the count stops at `2^24` candidates, and a `u` of 24 bits selects a candidate of share `s` with a
+/// relative error of up to `2^-24 / s`: take `f64` for streams of tens of thousands.
 ///
 /// **Source.** P3, section 3 and equation 1; Chao 1982 for the selection; Bitterli, Wyman, Pharr, Shirley, Lefohn, Jarosz
 /// 2020 (*Spatiotemporal reservoir resampling*) for its use in rendering.
@@ -73,7 +77,11 @@ impl<X, F: Float> Reservoir<X, F> {
     #[inline]
     pub fn update_with(&mut self, score: F, inverse_density: F, u: F, sample: impl FnOnce() -> X) -> bool {
         self.candidates += F::ONE;
-        self.stream.offer(score * inverse_density, u, || Chosen { sample: sample(), score, inverse_density })
+        self.stream.offer(candidate_weight(score, inverse_density), u, || Chosen {
+            sample: sample(),
+            score,
+            inverse_density,
+        })
     }
 
     /// Counts a candidate of weight zero: one whose drawing failed, or whose score is known to be zero.
@@ -117,10 +125,11 @@ impl<X, F: Float> Reservoir<X, F> {
     /// **Source.** Bitterli et al. 2020, algorithm 4.
     #[inline]
     pub fn merge(&mut self, other: Resampled<X, F>, target: &impl Target<X, F>, u: F) {
-        self.candidates += other.confidence;
+        let confidence = other.confidence.weight_or_zero();
+        self.candidates += confidence;
         if let Some(Selected { sample, contribution_weight, .. }) = other.selected {
             let score = target.score(&sample);
-            let weight = score * contribution_weight * other.confidence;
+            let weight = candidate_weight(score, contribution_weight) * confidence;
             self.stream.offer(weight, u, || Chosen { sample, score, inverse_density: contribution_weight });
         }
     }
@@ -133,7 +142,8 @@ impl<X, F: Float> Reservoir<X, F> {
             // A single candidate is importance sampling, without the detour by way of the target and its rounding. Confidences
             // that add up to one may be several candidates: their sum of weights is another one.
             let single = candidates == F::ONE && sum == score * inverse_density;
-            let contribution_weight = if single { inverse_density } else { sum / (candidates * score) };
+            let contribution_weight =
+                if single { inverse_density } else { contribution_weight(sum, candidates, score) };
             Selected { sample, score, contribution_weight }
         });
         Resampled { selected, confidence: candidates }
@@ -173,7 +183,7 @@ impl<X, F: Float> Reservoir<X, F> {
     /// [`update`](Self::update), decided by what is left of a number.
     #[inline]
     pub fn update_by(&mut self, sample: X, score: F, inverse_density: F, number: &mut OneNumber) -> bool {
-        let weight = (score * inverse_density).weight_or_zero();
+        let weight = candidate_weight(score, inverse_density);
         if weight == F::ZERO {
             self.skip();
             return false;

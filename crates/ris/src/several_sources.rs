@@ -1,7 +1,7 @@
 //! Candidates from several distributions, a fixed number from each: the multi-sample model.
 
 use crate::resampled::Selected;
-use crate::stream::{Chosen, Stream};
+use crate::stream::{Chosen, Stream, candidate_weight, contribution_weight};
 use crate::{Float, Resampled, Target, Uniform};
 
 /// A set of `K` source distributions over the same space.
@@ -44,9 +44,17 @@ pub struct BalanceWeights;
 impl<F: Float> Weights<F> for BalanceWeights {
     #[inline]
     fn weight(&self, source: usize, densities: &[F]) -> F {
-        let sum: F = densities.iter().map(|density| density.weight_or_zero()).sum();
-        if sum > F::ZERO { densities[source].weight_or_zero() / sum } else { F::ZERO }
+        share(source, || densities.iter().copied())
     }
+}
+
+/// The share of one term in a sum, where what is not positive and finite is zero; zero if there is no such term. Sums beyond
+/// the largest number are no obstacle.
+pub(crate) fn share<F: Float, I: Iterator<Item = F>>(index: usize, terms: impl Fn() -> I) -> F {
+    let terms = || terms().map(Float::weight_or_zero);
+    let largest = terms().fold(F::ZERO, |largest, term| if term > largest { term } else { largest });
+    let own = terms().nth(index).unwrap_or(F::ZERO);
+    if own > F::ZERO { own / largest / terms().map(|term| term / largest).sum::<F>() } else { F::ZERO }
 }
 
 /// Resamples candidates of which `counts[k]` come from source `k`.
@@ -101,7 +109,7 @@ pub fn resample_sources<X, F: Float, const K: usize>(
             let score = target.score(&sample);
             let inverse_density = heuristic.weight(source, &scaled) / scaled[source];
             let u = uniform.next_uniform();
-            stream.offer(score * inverse_density, u, || Chosen { sample, score, inverse_density });
+            stream.offer(candidate_weight(score, inverse_density), u, || Chosen { sample, score, inverse_density });
         }
     }
     let confidence = counts_f.iter().copied().sum();
@@ -111,7 +119,9 @@ pub fn resample_sources<X, F: Float, const K: usize>(
 /// The outcome of a stream whose weights sum to an estimate of the target's integral.
 pub(crate) fn finish<X, F: Float>(stream: Stream<X, F>, confidence: F) -> Resampled<X, F> {
     let sum = stream.weight_sum;
-    let selected =
-        stream.chosen.map(|Chosen { sample, score, .. }| Selected { sample, score, contribution_weight: sum / score });
+    let selected = stream.chosen.map(|Chosen { sample, score, .. }| {
+        let contribution_weight = contribution_weight(sum, F::ONE, score);
+        Selected { sample, score, contribution_weight }
+    });
     Resampled { selected, confidence }
 }

@@ -3,6 +3,8 @@
 use crate::{Float, Uniform};
 
 /// A candidate with the density of which it was drawn.
+///
+/// One that could not be drawn still counts among the `M`: where a stream of proposals is wanted, give it density zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proposal<X, F = f32> {
     /// The candidate.

@@ -19,6 +19,19 @@ pub(crate) struct Stream<X, F> {
     pub(crate) weight_sum: F,
 }
 
+/// The weight of a candidate: zero unless score and product are positive and finite. Two negative numbers make no weight.
+#[inline(always)]
+pub(crate) fn candidate_weight<F: Float>(score: F, inverse_density: F) -> F {
+    if score > F::ZERO { (score * inverse_density).weight_or_zero() } else { F::ZERO }
+}
+
+/// `sum / (candidates * score)`, finite for any weights: neither the product of large numbers nor the quotient by small ones
+/// may overflow.
+#[inline(always)]
+pub(crate) fn contribution_weight<F: Float>(sum: F, candidates: F, score: F) -> F {
+    (sum / candidates / score).at_most(F::MAX)
+}
+
 impl<X, F: Float> Stream<X, F> {
     pub(crate) const EMPTY: Self = Self { chosen: None, weight_sum: F::ZERO };
 
@@ -28,8 +41,9 @@ impl<X, F: Float> Stream<X, F> {
         let weight = weight.weight_or_zero();
         // Sums beyond the largest number stay there.
         self.weight_sum = (self.weight_sum + weight).at_most(F::MAX);
-        // u < 1 makes the first positive weight certain, also in rounding: weight_sum is then the weight itself.
-        let chosen = u * self.weight_sum < weight;
+        // The second condition makes the first positive weight certain: subnormal numbers round u * w to w, and generators
+        // of f32 are known to return 1.
+        let chosen = weight > F::ZERO && (u * self.weight_sum < weight || self.weight_sum == weight);
         if chosen {
             self.chosen = Some(make());
         }

@@ -25,7 +25,7 @@ use crate::{Budget, Float};
 /// much where `f^2/(g p)` is small, that is, if `g` fits `f` worse than `p` does: more candidates then make the variance
 /// **larger**, see [`more_candidates_hurt`](Self::more_candidates_hurt).
 ///
-/// **Bad input.** Candidates with `p <= 0`, or with numbers that are not finite, count as zero in all sums (and among the `n`).
+/// **Bad input.** Candidates with `p <= 0`, or with numbers or quotients that are not finite, count as zero in all sums (and among the `n`).
 /// Where `g = 0` and `f != 0` resampling is biased and `e2` infinite: such candidates are counted, see
 /// [`unsupported`](Self::unsupported), and left out of `e2`.
 ///
@@ -63,6 +63,15 @@ struct Sums {
     over_target: f64,
     /// `(f / p)^2` of the candidates with `g > 0`: the part that `e2` has to leave out.
     paired: f64,
+}
+
+impl Sums {
+    fn add(&mut self, other: &Self) {
+        self.ratio += other.ratio;
+        self.square += other.square;
+        self.over_target += other.over_target;
+        self.paired += other.paired;
+    }
 }
 
 /// `e1`, `e2`, `e3` of one component.
@@ -111,21 +120,21 @@ impl<const C: usize> VarianceModel<C> {
         self.count += 1;
         let (g, p) = (g.weight_or_zero().to_f64(), p.weight_or_zero().to_f64());
         let f = f.map(Float::to_f64);
-        if p == 0.0 || !f.iter().all(|f| f.is_finite()) {
+        let terms = f.map(|f| {
+            let ratio = f / p;
+            let (over_target, paired) = if g > 0.0 { (ratio * (f / g), ratio * ratio) } else { (0.0, 0.0) };
+            Sums { ratio, square: ratio * ratio, over_target, paired }
+        });
+        let finite = |sums: &Sums| sums.square.is_finite() && sums.over_target.is_finite();
+        if p == 0.0 || !(g / p).is_finite() || !terms.iter().all(finite) {
             return;
         }
-        self.target += g / p;
         if g == 0.0 && f.iter().any(|&f| f != 0.0) {
             self.unsupported += 1;
         }
-        for (sums, f) in self.components.iter_mut().zip(f) {
-            let ratio = f / p;
-            sums.ratio += ratio;
-            sums.square += ratio * ratio;
-            if g > 0.0 {
-                sums.over_target += ratio * (f / g);
-                sums.paired += ratio * ratio;
-            }
+        self.target += g / p;
+        for (sums, term) in self.components.iter_mut().zip(&terms) {
+            sums.add(term);
         }
     }
 
@@ -140,10 +149,7 @@ impl<const C: usize> VarianceModel<C> {
         self.unsupported += other.unsupported;
         self.target += other.target;
         for (sums, other) in self.components.iter_mut().zip(&other.components) {
-            sums.ratio += other.ratio;
-            sums.square += other.square;
-            sums.over_target += other.over_target;
-            sums.paired += other.paired;
+            sums.add(other);
         }
     }
 

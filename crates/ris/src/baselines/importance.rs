@@ -9,7 +9,7 @@ use crate::{Budget, Float, Source, Uniform};
 /// **Symbols.** `f`: the integrand; `X_i`: samples of density `p`; `N`: their number, real, rounded at random.
 ///
 /// **Unbiased** if `f != 0` implies `p > 0`. **Variance** `(e3 - e1) / N`, see [`VarianceModel`](crate::VarianceModel).
-/// **Cost** `N (T_X + T_Y)`.
+/// **Cost** `N (T_X + T_Y)`. **Bad input**: densities that are zero, negative, infinite or NaN add nothing.
 ///
 /// ```
 /// use ris::{baselines::ImportanceSampling, from_fn};
@@ -37,7 +37,10 @@ impl ImportanceSampling {
         let samples = Budget::round(self.samples, uniform);
         let part = F::ONE / F::from_f64(f64::from(samples));
         (0..samples).fold(V::default(), |sum, _| match source.propose(uniform) {
-            Some(proposal) => sum + f(&proposal.sample) * (F::ONE / proposal.density * part),
+            Some(proposal) => match (F::ONE / proposal.density).weight_or_zero() {
+                inverse_density if inverse_density > F::ZERO => sum + f(&proposal.sample) * (inverse_density * part),
+                _ => sum,
+            },
             None => sum,
         })
     }

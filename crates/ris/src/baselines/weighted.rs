@@ -2,6 +2,7 @@
 
 use core::ops::{Add, Mul};
 
+use crate::stream::candidate_weight;
 use crate::{Budget, Float, Source, Target, Uniform};
 
 /// Weighted importance sampling: a ratio of two estimates from the same samples.
@@ -12,7 +13,8 @@ use crate::{Budget, Float, Source, Target, Uniform};
 ///
 /// **Symbols.** `f`: the integrand; `g`: a target whose integral is known; `X_i`: samples of density `p`; `N`: their number.
 ///
-/// **Biased**, of order `1/N`; **consistent**. If all samples have target zero, the estimate is zero.
+/// **Biased**, of order `1/N`; **consistent**. If all samples have target zero, the estimate is zero. Densities that are zero,
+/// negative, infinite or NaN add nothing.
 ///
 /// **Source.** Bekaert, Sbert, Willems 2000 (*Weighted importance sampling techniques for Monte Carlo radiosity*).
 ///
@@ -50,9 +52,12 @@ impl<F: Float> WeightedImportanceSampling<F> {
         let mut weights = F::ZERO;
         let sum = (0..samples).fold(V::default(), |sum, _| match source.propose(uniform) {
             Some(proposal) => {
-                let inverse = F::ONE / proposal.density;
-                weights += (target.score(&proposal.sample) * inverse).weight_or_zero();
-                sum + f(&proposal.sample) * inverse
+                let inverse_density = (F::ONE / proposal.density).weight_or_zero();
+                if inverse_density == F::ZERO {
+                    return sum;
+                }
+                weights += candidate_weight(target.score(&proposal.sample), inverse_density);
+                sum + f(&proposal.sample) * inverse_density
             }
             None => sum,
         });
