@@ -175,8 +175,8 @@ impl<X, F: Float> Pairwise<X, F> {
 
 /// The balance heuristic over all inputs, `m_i(y) = c_i g_i(y) / sum_j c_j g_j(y)`, at a sample with these scores.
 ///
-/// The oracle of [`Pairwise`]: less variance in general, and quadratic cost, for each sample has to be scored by every
-/// input's target. **Source.** Lin et al. 2022, equation 36.
+/// The oracle of [`Pairwise`]: mostly, but not always, less variance, and quadratic cost, for each sample has to be scored by
+/// every input's target. An input that does not exist has weight zero. **Source.** Lin et al. 2022, equation 36.
 ///
 /// ```
 /// let weights = [0, 1].map(|i| ris::balance(i, &[2.0, 1.0], &[0.5, 3.0]));
