@@ -9,12 +9,17 @@ use crate::uniform::BELOW_ONE;
 ///
 /// # Laws
 /// `select(u)` with `u` uniform in `[0, 1)` is `i` with probability `w_i / sum_j w_j`, up to the resolution of `u`; an
-/// index of weight zero is never returned. `None` exactly if all weights are zero.
+/// index of weight zero is never returned, whatever `u` is. `None` exactly if all weights are zero.
 pub trait Select<F> {
     /// The index that `u` selects.
     fn select(&self, u: F) -> Option<usize>;
     /// Sum of the weights.
     fn sum(&self) -> F;
+}
+
+/// Below zero, and NaN, is zero: the first index that has weight.
+fn from_zero(u: f64) -> f64 {
+    if u > 0.0 { u } else { 0.0 }
 }
 
 /// Prefix sums, searched by bisection.
@@ -74,7 +79,7 @@ impl PrefixSums {
     /// The index that `u` in `[0, 1)` selects, and where in its share it lies, in `[0, 1)`.
     pub fn select_with_rest(&self, u: f64) -> Option<(usize, f64)> {
         let total = self.total();
-        let point = u * total;
+        let point = from_zero(u) * total;
         let index = self.sums.partition_point(|&sum| sum <= point);
         // Rounding of u * total may reach the total: the last positive weight is meant.
         let index = if index < self.sums.len() { index } else { self.sums.partition_point(|&sum| sum < total) };
@@ -156,7 +161,7 @@ impl AliasTable {
 impl<F: Float> Select<F> for AliasTable {
     #[inline]
     fn select(&self, u: F) -> Option<usize> {
-        let place = u.to_f64() * self.bins.len() as f64;
+        let place = from_zero(u.to_f64()) * self.bins.len() as f64;
         let index = (place as usize).min(self.bins.len().checked_sub(1)?);
         let bin = self.bins[index];
         Some(if place - (index as f64) < bin.threshold { index } else { bin.alias })
@@ -185,7 +190,7 @@ mod tests {
     #[test]
     fn numbers_at_the_ends_select_positive_weights() {
         let weights = [0.0_f32, 1.0, 0.0, 2.0, 0.0];
-        for u in [0.0, f32::EPSILON, 1.0 - f32::EPSILON / 2.0, 1.0] {
+        for u in [0.0, f32::EPSILON, 1.0 - f32::EPSILON / 2.0, 1.0, 2.0, -1.0, f32::NAN, f32::INFINITY] {
             for index in [PrefixSums::new(weights).select(u), AliasTable::new(weights).select(u)] {
                 assert!(matches!(index, Some(1 | 3)), "{u} {index:?}");
             }

@@ -25,7 +25,7 @@ use crate::{Budget, Float};
 /// much where `f^2/(g p)` is small, that is, if `g` fits `f` worse than `p` does: more candidates then make the variance
 /// **larger**, see [`more_candidates_hurt`](Self::more_candidates_hurt).
 ///
-/// **Bad input.** Candidates with `p <= 0`, or with numbers or quotients that are not finite, count as zero in all sums (and among the `n`).
+/// **Bad input.** Candidates with `p <= 0`, or with numbers or quotients that are not finite (or beyond 1e140), count as zero in all sums (and among the `n`).
 /// Where `g = 0` and `f != 0` resampling is biased and `e2` infinite: such candidates are counted, see
 /// [`unsupported`](Self::unsupported), and left out of `e2`.
 ///
@@ -51,6 +51,9 @@ pub struct VarianceModel<const C: usize> {
     target: f64,
     components: [Sums; C],
 }
+
+/// Products of sums of smaller numbers are finite.
+const HUGE: f64 = 1e140;
 
 /// Sums of one component of the integrand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -125,8 +128,8 @@ impl<const C: usize> VarianceModel<C> {
             let (over_target, paired) = if g > 0.0 { (ratio * (f / g), ratio * ratio) } else { (0.0, 0.0) };
             Sums { ratio, square: ratio * ratio, over_target, paired }
         });
-        let finite = |sums: &Sums| sums.square.is_finite() && sums.over_target.is_finite();
-        if p == 0.0 || !(g / p).is_finite() || !terms.iter().all(finite) {
+        let finite = |sums: &Sums| sums.square < HUGE && sums.over_target < HUGE;
+        if p == 0.0 || g / p >= HUGE || !terms.iter().all(finite) {
             return;
         }
         if g == 0.0 && f.iter().any(|&f| f != 0.0) {

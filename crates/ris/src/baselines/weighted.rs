@@ -61,6 +61,6 @@ impl<F: Float> WeightedImportanceSampling<F> {
             }
             None => sum,
         });
-        if weights > F::ZERO { sum * (self.target_integral / weights) } else { V::default() }
+        if weights > F::ZERO { sum * (self.target_integral / weights).at_most(F::MAX) } else { V::default() }
     }
 }
