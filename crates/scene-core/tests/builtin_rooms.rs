@@ -69,7 +69,9 @@ fn every_builtin_scene_is_the_same_each_time() {
 
 #[test]
 fn no_path_leaves_a_closed_room() {
-    for description in [builtin::office(), builtin::conference(), builtin::interior()] {
+    let rooms = [builtin::office(), builtin::conference(), builtin::interior()];
+    let photon_maps = [builtin::rooms(10, 10), builtin::rooms(1, 1), builtin::door_slit(), builtin::caustic_room()];
+    for description in rooms.into_iter().chain(photon_maps) {
         let scene = build(description);
         assert_eq!(escapes(&scene, 4000, 12), 0, "{}", scene.name());
     }

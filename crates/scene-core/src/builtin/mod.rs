@@ -1,8 +1,10 @@
 //! Scenes that need no file: generated here, so that everything runs with no download.
 
 mod blob;
+mod caustics;
 mod conference;
 mod cornell_box;
+mod door_slit;
 mod finish;
 mod form;
 mod furnace;
@@ -11,6 +13,7 @@ mod interior;
 mod noise;
 mod office;
 mod plane;
+mod rooms;
 mod shapes;
 mod sky;
 mod solids;
@@ -20,12 +23,15 @@ mod variety;
 use crate::reference::SceneDescription;
 
 pub use blob::{blob, blob_environment, blob_under};
+pub use caustics::{caustic_room, glass_ball};
 pub use conference::conference;
 pub use cornell_box::cornell_box;
+pub use door_slit::door_slit;
 pub use furnace::{furnace, furnace_box};
 pub use interior::interior;
 pub use office::office;
 pub use plane::{plane_light, plane_point};
+pub use rooms::rooms;
 pub use shapes::SceneBuilder;
 pub use sky::sky_image;
 pub use sphere_row::sphere_row;
@@ -87,6 +93,20 @@ impl Builtin {
             about: "four spheres (diffuse, Cook-Torrance, rough gold, Phong) in uniform light",
             make: sphere_row,
         },
+        Self { name: "rooms", about: "10 x 10 rooms with a lamp each; the camera is in one of them", make: rooms_100 },
+        Self { name: "rooms-1000", about: "40 x 25 rooms with a lamp each", make: rooms_1000 },
+        Self { name: "rooms-10000", about: "100 x 100 rooms with a lamp each", make: rooms_10000 },
+        Self {
+            name: "door-slit",
+            about: "two rooms and a door that is ajar: the lamp in the one, the camera in the other",
+            make: door_slit,
+        },
+        Self {
+            name: "caustic-room",
+            about: "glass and metal on a table, lit via a bright wall only",
+            make: caustic_room,
+        },
+        Self { name: "glass-ball", about: "caustics of a glass ball and a golden ring on a floor", make: glass_ball },
     ];
 
     /// The builtin scene of this name.
@@ -106,6 +126,18 @@ fn furnace_sphere() -> SceneDescription {
 
 fn furnace_box_half() -> SceneDescription {
     furnace_box(0.5, 1.0)
+}
+
+fn rooms_100() -> SceneDescription {
+    rooms(10, 10)
+}
+
+fn rooms_1000() -> SceneDescription {
+    SceneDescription { name: "rooms-1000".to_owned(), ..rooms(40, 25) }
+}
+
+fn rooms_10000() -> SceneDescription {
+    SceneDescription { name: "rooms-10000".to_owned(), ..rooms(100, 100) }
 }
 
 #[cfg(test)]
