@@ -60,6 +60,9 @@ pub struct LightPathSettings {
     /// Shadow rays: `all`, `sampled:N` by contribution, or `ordered:TOLERANCE`, the brightest first.
     #[arg(long, default_value = "all", value_parser = parse_shadow_rays)]
     pub shadow_rays: ShadowRays,
+    /// Shadow rays per eye path (bdpt), for connections chosen by resampling [default: one for each connection].
+    #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=1 << 10))]
+    pub resampled_connections: Option<u32>,
     /// Final gathering with this number of rays; 0 is none.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
     pub gather: u32,
@@ -90,6 +93,7 @@ impl Default for LightPathSettings {
             light_paths: DEFAULT_LIGHT_PATHS,
             interleave: Interleaved::new(3, 3).ok(),
             shadow_rays: ShadowRays::All,
+            resampled_connections: None,
             gather: 0,
             geometry_alone: false,
             without_lens: false,

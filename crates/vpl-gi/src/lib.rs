@@ -15,7 +15,8 @@ mod shadow_rays;
 
 pub use ambient::openness;
 pub use bidirectional::{
-    Bidirectional, Classical, LightPaths, PathHeuristic, PathTechniques, Stratified, TechniqueSet,
+    Bidirectional, Classical, ConnectionTests, EveryConnection, LightPaths, PathHeuristic, PathTechniques, Stratified,
+    TechniqueSet,
 };
 pub use caustics::{CausticMap, NoCaustics};
 pub use discontinuity::{DiscontinuityBuffer, PixelFeatures};

@@ -5,6 +5,7 @@ use scene_core::{EmitterChoice, Ray, Scene, Vertex};
 use vpl_gi::{Bidirectional, LightPaths, PathHeuristic, TechniqueSet};
 
 use super::FirstHit;
+use super::connections::ResampledConnections;
 use super::virtual_lights::FirstVertex;
 use crate::render::SharingEstimator;
 
@@ -15,7 +16,12 @@ pub struct BidirectionalPaths<H, C> {
     pub paths: Bidirectional<H, C>,
     /// Number of light paths that a sample sees.
     pub count: u32,
+    /// Shadow rays per eye path, for connections that are chosen by resampling; `None` tests all connections.
+    pub resampled: Option<u32>,
 }
+
+/// The numbers that choose connections.
+const CONNECTIONS_DOMAIN: u32 = 0x636f_6e6e;
 
 impl<H: PathHeuristic + Sync, C: EmitterChoice + Sync> SharingEstimator for BidirectionalPaths<H, C> {
     type Shared<V: Vertex + Send + Sync> = LightPaths<V>;
@@ -47,7 +53,13 @@ impl<H: PathHeuristic + Sync, C: EmitterChoice + Sync> SharingEstimator for Bidi
         V: Vertex<Spectrum = S::Spectrum> + Send + Sync,
     {
         let mut first = FirstVertex { ray, hit: None };
-        let radiance = self.paths.radiance(scene, lights, ray, sampler, &mut first);
+        let radiance = match self.resampled {
+            None => self.paths.radiance(scene, lights, ray, sampler, &mut first),
+            Some(rays) => {
+                let mut tests = ResampledConnections::new(rays, sampler.fork(CONNECTIONS_DOMAIN));
+                self.paths.radiance_with(scene, lights, ray, sampler, &mut first, &mut tests)
+            }
+        };
         (radiance, first.hit)
     }
 

@@ -2,6 +2,7 @@
 
 mod ambient_occlusion;
 mod bidirectional;
+mod connections;
 mod direct;
 mod light;
 mod path;
@@ -16,6 +17,7 @@ use qmc_sampling::Sampler;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use bidirectional::BidirectionalPaths;
+pub use connections::ResampledConnections;
 pub use direct::{DirectLight, LightAlone, NextEvent, Scattered, ScatteringAlone};
 pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};

@@ -241,7 +241,7 @@ fn neighbour(pixel: usize, [width, height]: [u32; 2], u: [f32; 2], radius: f32) 
     let [dx, dy] = sample_concentric_disk(u).map(|d| (d * radius).round() as i64);
     let (x, y) = ((pixel % width as usize) as i64 + dx, (pixel / width as usize) as i64 + dy);
     let is_inside = (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y);
-    is_inside.then_some(y as usize * width as usize + x as usize)
+    is_inside.then(|| y as usize * width as usize + x as usize)
 }
 
 /// The light of the selected sample.

@@ -244,7 +244,11 @@ fn estimate_with<S: Scene + Sync>(
             let roulette_of_light = RussianRoulette::LocalAlbedo { from_length: 0 };
             let tracing = LightTracing { choice, max_length: u32::MAX, roulette: roulette_of_light };
             let paths = Bidirectional { heuristic, techniques, tracing, max_depth: settings.max_depth, roulette };
-            let estimator = BidirectionalPaths { paths, count: settings_of_paths.light_paths };
+            let estimator = BidirectionalPaths {
+                paths,
+                count: settings_of_paths.light_paths,
+                resampled: settings_of_paths.resampled_connections,
+            };
             let camera = Shared { estimator, sharing: settings_of_paths.sharing() };
             Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
                 .render(observe)

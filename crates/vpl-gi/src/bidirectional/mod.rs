@@ -1,5 +1,6 @@
 //! Bidirectional path tracing.
 
+mod connections;
 mod density;
 mod light_paths;
 mod path;
@@ -14,6 +15,7 @@ use scene_core::{ChosenEmitter, EmitterChoice, EmitterId, RussianRoulette, Scene
 use crate::lights::LightTracing;
 use path::Samples;
 
+pub use connections::{ConnectionTests, EveryConnection};
 pub use light_paths::LightPaths;
 pub use techniques::{Classical, PathHeuristic, PathTechniques, Stratified};
 

@@ -6,6 +6,7 @@ use scene_core::{Emitter, EmitterChoice, EmitterId, Ray, Scene, Sensor, Spectrum
 use smallvec::SmallVec;
 
 use super::Bidirectional;
+use super::connections::{ConnectionTests, EveryConnection};
 use super::density::by_area;
 use super::light_paths::{LightPaths, backward};
 use super::path::{CENTRE, EyeVertex, Joint, LensRay, Path, Samples};
@@ -36,6 +37,26 @@ impl<H: PathHeuristic, C: EmitterChoice> Bidirectional<H, C> {
         V: Vertex<Spectrum = S::Spectrum>,
         O: Observer<S::Vertex<'s>>,
     {
+        self.radiance_with(scene, lights, ray, sampler, observer, &mut EveryConnection)
+    }
+
+    /// [`radiance`](Self::radiance) with shadow rays as `tests` decides. The observer sees what is added at once, not what is put off to the
+    /// end of the eye path.
+    pub fn radiance_with<'s, S, V, O, T>(
+        &self,
+        scene: &'s S,
+        lights: &LightPaths<V>,
+        ray: Ray,
+        sampler: &mut impl Sampler,
+        observer: &mut O,
+        tests: &mut T,
+    ) -> S::Spectrum
+    where
+        S: Scene,
+        V: Vertex<Spectrum = S::Spectrum>,
+        O: Observer<S::Vertex<'s>>,
+        T: ConnectionTests<S::Spectrum>,
+    {
         let [width, height] = scene.sensor().resolution();
         let pixels = f64::from(width) * f64::from(height);
         let density = pixels * f64::from(scene.sensor().pdf_ray(ray.origin, ray.direction).1);
@@ -48,7 +69,8 @@ impl<H: PathHeuristic, C: EmitterChoice> Bidirectional<H, C> {
             samples: self.samples(lights),
             vertices: EyeVertices::new(),
         };
-        eye_path.trace(ray, sampler, observer)
+        let at_once = eye_path.trace(ray, sampler, observer, tests);
+        at_once + tests.finish(|ray| scene.occluded(ray))
     }
 }
 
@@ -74,6 +96,7 @@ where
         mut ray: Ray,
         sampler: &mut impl Sampler,
         observer: &mut O,
+        tests: &mut impl ConnectionTests<S::Spectrum>,
     ) -> S::Spectrum {
         let settings = self.settings;
         let mut radiance = S::Spectrum::ZERO;
@@ -110,7 +133,7 @@ where
                 let lights = self.lights.lights();
                 let connections = Connections::up_to(longest, &everything);
                 for_each_unshadowed(self.scene, &vertex, lights, &connections, |light, value| {
-                    radiance += self.connect(&vertex, light, throughput * value, observer);
+                    radiance += self.connect(&vertex, light, throughput * value, observer, tests);
                 });
             }
 
@@ -185,12 +208,13 @@ where
 
     /// The contribution `value` of a connection, weighted, and zero where something is in between.
     #[inline]
-    fn connect<O: Observer<S::Vertex<'s>>>(
+    fn connect<O: Observer<S::Vertex<'s>>, T: ConnectionTests<S::Spectrum>>(
         &self,
         vertex: &S::Vertex<'s>,
         light: usize,
         value: S::Spectrum,
         observer: &mut O,
+        tests: &mut T,
     ) -> S::Spectrum {
         let lights = self.lights.lights();
         let end = &lights.as_slice()[light];
@@ -207,17 +231,22 @@ where
             LightKind::Surface(y) => (y.point().position - vertex.point().position).normalize(),
         };
         let heuristic = &self.settings.heuristic;
-        let is_occluded = || self.scene.occluded(&shadow_ray(self.scene, vertex, lights, light));
-        if !heuristic.weighs_first() && is_occluded() {
+        let ray = || shadow_ray(self.scene, vertex, lights, light);
+        // A ray is cheaper than a weight for which densities are needed; whoever chooses among connections has to know the weight.
+        let test_first = T::TESTS_ALL && !heuristic.weighs_first();
+        if test_first && self.scene.occluded(&ray()) {
             return S::Spectrum::ZERO;
         }
         let technique = end.length as usize + 1;
         let weight = heuristic.weight(technique, &self.path(Joint::Connection { vertex, light, wi }, technique)) as f32;
-        if weight == 0.0 || (heuristic.weighs_first() && is_occluded()) {
+        if weight == 0.0 {
             return S::Spectrum::ZERO;
         }
         let value = value * weight;
-        observer.contribution(self.vertices.len() as u32, Some(end.length), value);
+        let value = if test_first { value } else { tests.connect(value, ray(), |ray| self.scene.occluded(ray)) };
+        if !value.is_black() {
+            observer.contribution(self.vertices.len() as u32, Some(end.length), value);
+        }
         value
     }
 }

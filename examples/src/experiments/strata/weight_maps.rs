@@ -160,7 +160,7 @@ fn technique(
         max_depth: 2,
         roulette: RussianRoulette::Never,
     };
-    let estimator = Technique { all: BidirectionalPaths { paths, count: 1 }, samples_light };
+    let estimator = Technique { all: BidirectionalPaths { paths, count: 1, resampled: None }, samples_light };
     Ok(Shared { estimator, sharing: Sharing::Interleaved(Interleaved::new(3, 3)?) })
 }
 
