@@ -11,6 +11,7 @@
 
 mod context;
 mod report;
+mod resampling;
 mod samplers;
 mod setup;
 mod strata;
@@ -50,6 +51,31 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "stratification-efficiency",
         about: "figure 6 of Kollig and Keller 2004: cost at equal error by heuristic and threshold",
         measure: stratification_efficiency::measure,
+    },
+    Experiment {
+        name: "ris-density",
+        about: "figure 1 of Talbot, Cline and Egbert 2005: the density of what resampling selects",
+        measure: resampling::density,
+    },
+    Experiment {
+        name: "ris-ratio",
+        about: "figure 3 of that paper: where more candidates pay, and where more samples; variances predicted and measured",
+        measure: resampling::ratio,
+    },
+    Experiment {
+        name: "ris-direct",
+        about: "figure 4 of that paper: direct light in equal time, the robust choice of M and N against the best",
+        measure: resampling::direct,
+    },
+    Experiment {
+        name: "ris-brdf",
+        about: "figure 5 of that paper: any scattering function by resampling of uniform directions",
+        measure: resampling::brdf,
+    },
+    Experiment {
+        name: "ris-reuse",
+        about: "reuse of samples between pixels against resampling alone, in equal time",
+        measure: resampling::reuse,
     },
 ];
 

@@ -20,6 +20,13 @@ pub struct Setup {
     pub settings: RenderSettings,
 }
 
+/// The file of this name below the folder that the environment variable `LICHTWERK_ASSETS` names, or else `../shared/assets`; nothing if there is
+/// none.
+pub(super) fn asset_file(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("LICHTWERK_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
+    Some(folder.join(name)).filter(|path| path.exists())
+}
+
 impl Setup {
     /// A builtin scene at another size, with its own filter and path length.
     ///
@@ -36,16 +43,19 @@ impl Setup {
     /// # Errors
     /// A file that cannot be loaded.
     pub fn asset(context: &Context, file: &str, size: [u32; 2]) -> Result<Option<Self>, Failure> {
-        let folder =
-            std::env::var_os("LICHTWERK_ASSETS").map_or_else(|| PathBuf::from("../shared/assets"), PathBuf::from);
-        let path = folder.join(file);
-        if !path.exists() {
-            return Ok(None);
-        }
+        let Some(path) = asset_file(file) else { return Ok(None) };
         Self::of(context, load_description(&path.to_string_lossy(), &[])?, size).map(Some)
     }
 
-    fn of(context: &Context, mut description: SceneDescription, [width, height]: [u32; 2]) -> Result<Self, Failure> {
+    /// A scene at another size, with its own filter and path length.
+    ///
+    /// # Errors
+    /// One that cannot be built at this size.
+    pub fn of(
+        context: &Context,
+        mut description: SceneDescription,
+        [width, height]: [u32; 2],
+    ) -> Result<Self, Failure> {
         (description.camera.width, description.camera.height) = (width, height);
         let filter = description.filter;
         let max_depth = description.max_depth.unwrap_or(u32::MAX);

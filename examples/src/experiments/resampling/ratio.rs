@@ -1,0 +1,175 @@
+//! Figure 3: where more candidates pay, and where more samples do.
+
+use std::time::Instant;
+
+use qmc_sampling::{Independent, Replications, Sampler, SamplerFamily};
+use rayon::prelude::*;
+use ris::{Budget, Objective, RatioMap, Source, Target, VarianceModel};
+use scene_core::film::LayeredImage;
+use scene_core::{Scene, Sensor, Spectrum, Vertex};
+use serde_json::Value;
+
+use super::{at_least, direct_light, papers_proposals, reported, with_budget};
+use crate::choices::AnyChoice;
+use crate::estimators::{DirectLight, ResampledDirect, measure_cost};
+use crate::experiments::{Claim, Context, Ratio, Report, Row, Setup};
+use crate::program::Failure;
+
+/// The two settings of the figure, of equal time in the paper.
+const FEW: Budget = Budget { candidates: 1.0, samples: 20.0 };
+const MANY: Budget = Budget { candidates: 60.0, samples: 1.0 };
+/// Neighbours whose candidates a pixel's model takes in.
+const POOL: usize = 1;
+
+/// Variance models of all pixels from candidates with their visibility, the map of the optimal M, and renderings with M = 1, N = 20 and M = 60, N = 1
+/// whose variances per pixel the models predict.
+pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failure> {
+    let mut report = context.report();
+    let size = context.effort([48, 36], [160, 120]);
+    let setup = Setup::builtin(context, "blob-environment", size)?;
+    let resampling = papers_proposals();
+    let samplers = Independent::new(context.seed_of("models", 0));
+    let direct = resampling.resampled(&setup.scene, &samplers, None)?;
+    let cost = measure_cost(&setup.scene, &samplers, &direct)?;
+    let map = models(&setup, &direct, &samplers, context.effort(512, 4096));
+    let optimal = map.candidates(POOL, cost, Objective::Weighted([1.0]));
+    context.save_picture("figure-3-map", &picture(&optimal, size)?, 0.0)?;
+
+    // Each pixel's ray goes through its centre, as those of the models.
+    let trials = context.effort(200, 800);
+    let mut measured = Vec::new();
+    for (budget, name) in [(FEW, "few"), (MANY, "many")] {
+        let direct = ResampledDirect { budget, ..direct.clone() };
+        let mut pixels = vec![Replications::new(); optimal.len()];
+        let start = Instant::now();
+        for trial in 0..trials {
+            let values = render(&setup, &direct, context.seed_of(name, trial));
+            pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.push(value));
+        }
+        let seconds = start.elapsed().as_secs_f64() / trials as f64;
+        let settings = direct_light(&setup, with_budget(&resampling, budget.candidates, budget.samples));
+        let rendering = setup.render(&settings, 1, context.seed_of("picture", 0))?;
+        context.save_picture(&format!("figure-3-{name}"), &rendering.film.develop(0), 0.0)?;
+        let params = [
+            ("M", Value::from(f64::from(budget.candidates))),
+            ("N", f64::from(budget.samples).into()),
+            ("predicted variance", predicted(&map, budget).iter().sum::<f64>().into()),
+        ];
+        let variances: Vec<f64> = pixels.iter().map(Replications::variance).collect();
+        let variance = variances.iter().sum::<f64>() / variances.len() as f64;
+        let row = Row::new("blob-environment", "direct", params);
+        report.rows.push(Row { variance, seconds, rays: rendering.rays.total(), ..row });
+        report.claims.push(agreement(budget, &variances, &predicted(&map, budget), size[0] as usize));
+        measured.push(variances);
+    }
+    compare(&optimal, &measured[0], &measured[1], &mut report);
+    Ok(report)
+}
+
+/// Measured over predicted variance, from eight interleaved sets of rows.
+fn agreement(budget: Budget, measured: &[f64], predicted: &[f64], width: usize) -> Claim {
+    const SETS: usize = 8;
+    let mut ratios = Replications::new();
+    for set in 0..SETS {
+        let sum = |values: &[f64]| values.chunks(width).skip(set).step_by(SETS).flatten().sum::<f64>();
+        ratios.push(sum(measured) / sum(predicted));
+    }
+    let ci95 = ratios.confidence_interval(0.95);
+    Claim {
+        id: format!("figure-3-m{}-measured-over-predicted-variance", budget.candidates),
+        paper: "1".to_owned(),
+        measured: ratios.mean(),
+        ci95,
+        // One is outside of one interval in twenty.
+        holds: ci95[0] <= 1.05 && ci95[1] >= 0.95,
+    }
+}
+
+/// Among the pixels where the two settings differ clearly: does the map say which is better? It prefers one to the other where its M is above or
+/// below that at which both have the same variance, the geometric mean of the two.
+fn compare(optimal: &[f64], few: &[f64], many: &[f64], report: &mut Report) {
+    let middle = f64::from(FEW.candidates * MANY.candidates).sqrt();
+    let clear: Vec<usize> =
+        (0..optimal.len()).filter(|&pixel| few[pixel] > 1.5 * many[pixel] || many[pixel] > 1.5 * few[pixel]).collect();
+    let right = clear.iter().filter(|&&pixel| (optimal[pixel] > middle) == (many[pixel] < few[pixel])).count() as f64;
+    let count = clear.len() as f64;
+    let share = right / count;
+    let error = 1.96 * (share * (1.0 - share) / count).sqrt();
+    let map = Ratio { value: share, ci95: [share - error, share + error] };
+    report.claims.push(at_least("figure-3-share-of-pixels-where-the-map-is-right".to_owned(), map, 0.8));
+    let better = many.iter().zip(few).filter(|(many, few)| many < few).count() as f64 / many.len() as f64;
+    let better = Ratio { value: better, ci95: [better; 2] };
+    report.claims.push(reported("figure-3-share-of-pixels-where-m60-has-less-variance".to_owned(), better));
+}
+
+/// Green where candidates pay, red where samples do, on the scale of the logarithm of M from 1 to 3600.
+fn picture(optimal: &[f64], [width, height]: [u32; 2]) -> Result<LayeredImage, Failure> {
+    let colour = |m: &f64| {
+        let share = (m.ln() / (f64::from(MANY.candidates).powi(2)).ln()).clamp(0.0, 1.0) as f32;
+        [1.0 - share, share, 0.05]
+    };
+    let mut image = LayeredImage::new(width, height)?;
+    image.set_rgb(&optimal.iter().map(colour).collect::<Vec<_>>())?;
+    Ok(image)
+}
+
+type Direct<'a> = ResampledDirect<'a, AnyChoice>;
+
+/// The model of each pixel, from `count` candidates at what the ray through its centre hits.
+fn models(setup: &Setup, direct: &Direct<'_>, samplers: &Independent, count: u32) -> RatioMap<1> {
+    let [width, height] = setup.scene.sensor().resolution();
+    let scene = &setup.scene;
+    let model = |pixel: u32| {
+        let mut model = VarianceModel::<1>::new();
+        let (x, y) = (pixel % width, pixel / width);
+        let ray = scene.sensor().sample_ray([x as f32 + 0.5, y as f32 + 0.5], [0.5; 2]).ray;
+        let Some(vertex) = scene.intersect(&ray).filter(Vertex::is_connectible) else { return model };
+        let (source, target) = (direct.source(scene, &vertex), direct.target(scene, &vertex));
+        let mut sampler = samplers.sampler(u64::from(pixel), 0);
+        for _ in 0..count {
+            match source.propose(&mut || sampler.next_1d()) {
+                Some(proposal) => {
+                    let candidate = proposal.sample;
+                    let value = candidate.value(&vertex);
+                    let is_seen = !value.is_black() && candidate.is_visible(scene, &vertex);
+                    let f = if is_seen { value.luminance() } else { 0.0 };
+                    model.add([f], target.score(&candidate), proposal.density);
+                }
+                None => model.add_nothing(),
+            }
+        }
+        model
+    };
+    let all: Vec<_> = (0..width * height).into_par_iter().map(model).collect();
+    let mut map = RatioMap::new(width as usize, height as usize);
+    for (pixel, model) in all.iter().enumerate() {
+        if let Some(place) = map.pixel_mut(pixel % width as usize, pixel / width as usize) {
+            *place = *model;
+        }
+    }
+    map
+}
+
+/// The luminance of direct light at the centre of each pixel, once.
+fn render(setup: &Setup, direct: &Direct<'_>, seed: u64) -> Vec<f64> {
+    let [width, height] = setup.scene.sensor().resolution();
+    let (scene, samplers) = (&setup.scene, Independent::new(seed));
+    let value = |pixel: u32| {
+        let (x, y) = (pixel % width, pixel / width);
+        let ray = scene.sensor().sample_ray([x as f32 + 0.5, y as f32 + 0.5], [0.5; 2]).ray;
+        let vertex = scene.intersect(&ray).filter(Vertex::is_connectible);
+        let mut sampler = samplers.sampler(u64::from(pixel), 0);
+        vertex.map_or(0.0, |vertex| f64::from(direct.sample(scene, &vertex, 1, true, &mut sampler).luminance()))
+    };
+    (0..width * height).into_par_iter().map(value).collect()
+}
+
+/// The variance of each pixel that its model predicts.
+fn predicted(map: &RatioMap<1>, budget: Budget) -> Vec<f64> {
+    let [width, height] = map.size();
+    let of_pixel = |pixel: usize| {
+        let [variance] = map.pooled(pixel % width, pixel / width, 0).predict(budget);
+        if variance.is_nan() { 0.0 } else { variance }
+    };
+    (0..width * height).map(of_pixel).collect()
+}

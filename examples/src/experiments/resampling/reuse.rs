@@ -1,0 +1,99 @@
+//! Reuse between pixels against resampling alone, in equal time.
+
+use serde_json::Value;
+
+use super::{Cost, at_least, direct_light, papers_proposals, strong_proposals, with_budget};
+use crate::experiments::{Claim, Context, Report, Row, Setup, ratio_of_means};
+use crate::program::{EstimatorName, Failure, RenderSettings};
+use crate::resampling::ResamplingSettings;
+
+/// Numbers of candidates for resampling alone: reuse has to beat the best of them.
+const ALONE: [f32; 4] = [4.0, 16.0, 64.0, 256.0];
+/// Numbers of candidates with reuse.
+const WITH_REUSE: [f32; 3] = [4.0, 16.0, 32.0];
+/// Rounds, neighbours in each, and radius in pixels.
+const REUSE: (u32, u32, f32) = (2, 5, 8.0);
+
+struct Candidate {
+    reuses: bool,
+    candidates: f32,
+    settings: RenderSettings,
+    cost: Cost,
+}
+
+/// For the blob under a sky with the paper's proposals, and for many lights with those of the program: the variance times seconds of resampling
+/// with several numbers of candidates, with and without reuse, all in turn.
+pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failure> {
+    let mut report = context.report();
+    let size = context.effort([64, 48], [160, 120]);
+    let mut setups = vec![
+        (Setup::builtin(context, "blob-environment", size)?, papers_proposals()),
+        (Setup::builtin(context, "blob", size)?, papers_proposals()),
+        (Setup::builtin(context, "lantern-field", size)?, ResamplingSettings::default()),
+    ];
+    if !context.quick {
+        let asset = Setup::asset(context, "many-lights/scene.scn", size)?;
+        setups.extend(asset.map(|setup| (setup, ResamplingSettings::default())));
+    }
+    for (setup, proposals) in &setups {
+        let settings = direct_light(setup, with_budget(&strong_proposals(), 16.0, 4.0));
+        let samples = context.effort(256, 1024);
+        let reference = setup.render(&settings, samples, context.seed_of("reference", 0))?.film.develop(0);
+        let mut all: Vec<Candidate> = ALONE.iter().map(|&m| candidate(setup, proposals, false, m)).collect();
+        all.extend(WITH_REUSE.iter().map(|&m| candidate(setup, proposals, true, m)));
+        for trial in 0..context.effort(8, 16) {
+            for candidate in &mut all {
+                let what = format!("{}, {}, {}", setup.scene.name(), candidate.reuses, candidate.candidates);
+                let samples = context.effort(2, 8);
+                let rendering = setup.render(&candidate.settings, samples, context.seed_of(&what, trial))?;
+                candidate.cost.push(&rendering, &reference)?;
+                if trial == 0 {
+                    let name = if candidate.reuses { "with-reuse" } else { "alone" };
+                    let name = format!("{}-{name}-m{}", setup.scene.name(), candidate.candidates);
+                    context.save_picture(&name, &rendering.film.develop(0), 0.0)?;
+                }
+            }
+        }
+        report_on(setup, &all, &mut report);
+    }
+    Ok(report)
+}
+
+fn candidate(setup: &Setup, proposals: &ResamplingSettings, reuses: bool, candidates: f32) -> Candidate {
+    let (reuse_rounds, reuse_neighbours, reuse_radius) = REUSE;
+    let resampling = ResamplingSettings {
+        reuse_rounds,
+        reuse_neighbours,
+        reuse_radius,
+        direct: crate::resampling::DirectName::Ris,
+        ..with_budget(proposals, candidates, 1.0)
+    };
+    let mut settings = direct_light(setup, resampling);
+    if reuses {
+        settings.estimator = EstimatorName::RestirDirect;
+    }
+    Candidate { reuses, candidates, settings, cost: Cost::default() }
+}
+
+fn report_on(setup: &Setup, all: &[Candidate], report: &mut Report) {
+    let scene = setup.scene.name();
+    for candidate in all {
+        let params = [
+            ("M", Value::from(f64::from(candidate.candidates))),
+            ("error times seconds", candidate.cost.by_seconds.mean().into()),
+            ("error times rays", candidate.cost.by_rays.mean().into()),
+        ];
+        let estimator = if candidate.reuses { "restir-direct" } else { "direct" };
+        report.rows.push(candidate.cost.trials.fill(Row::new(scene, estimator, params)));
+    }
+    let best = |reuses: bool| {
+        let some = all.iter().filter(move |candidate| candidate.reuses == reuses);
+        some.min_by(|a, b| a.cost.by_seconds.mean().total_cmp(&b.cost.by_seconds.mean()))
+    };
+    let (Some(alone), Some(with)) = (best(false), best(true)) else { return };
+    let gain = ratio_of_means(&alone.cost.by_seconds, &with.cost.by_seconds);
+    report.claims.push(at_least(format!("{scene}-gain-of-reuse-in-seconds"), gain, 4.0));
+    let rays = ratio_of_means(&alone.cost.by_rays, &with.cost.by_rays);
+    let id = format!("{scene}-gain-of-reuse-in-rays");
+    report.claims.push(Claim { holds: true, ..super::reported(id, rays) });
+}
