@@ -11,13 +11,22 @@ pub struct LightCandidate<S> {
     pub light: DirectSample<S>,
     /// Whether a ray has already come through.
     pub is_seen: bool,
+    /// What the vertex scatters of it, if that has been evaluated.
+    pub scattered: Option<S>,
 }
 
 impl<S: scene_core::Spectrum> LightCandidate<S> {
-    /// What the vertex scatters of it, unoccluded: `f cos L_e`.
+    /// What the vertex, the one that it was drawn for, scatters of it, unoccluded: `f cos L_e`.
     #[inline]
     pub fn value<V: Vertex<Spectrum = S>>(&self, vertex: &V) -> S {
-        vertex.eval(self.light.wi, TransportMode::Radiance) * self.light.radiance
+        self.scattered.unwrap_or_else(|| vertex.eval(self.light.wi, TransportMode::Radiance) * self.light.radiance)
+    }
+
+    /// The same with its value evaluated, once for all.
+    #[inline]
+    #[must_use]
+    pub fn evaluated<V: Vertex<Spectrum = S>>(self, vertex: &V) -> Self {
+        Self { scattered: Some(self.value(vertex)), ..self }
     }
 
     /// The shadow ray.

@@ -39,13 +39,13 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
     }
 
     // Candidates and samples in turn, over the same vertices.
-    let selected: Vec<_> = vertices
-        .iter()
-        .map(|(vertex, sampler)| {
-            let mut sampler = sampler.clone();
-            direct.source(scene, vertex).propose(&mut || sampler.next_1d()).map(|proposal| proposal.sample)
-        })
-        .collect();
+    let draw = |(vertex, sampler): &(S::Vertex<'_>, F::Sampler)| -> Vec<_> {
+        let mut sampler = sampler.clone();
+        let source = direct.source(scene, vertex);
+        let candidates = (0..EVALUATIONS).filter_map(|_| source.propose(&mut || sampler.next_1d()));
+        candidates.map(|proposal| proposal.sample).collect()
+    };
+    let selected: Vec<_> = vertices.iter().map(draw).collect();
     let blocks = vertices.len() / BLOCK;
     let mut candidate_block = (0..blocks).cycle();
     let mut sample_block = (0..blocks).cycle();
@@ -55,7 +55,7 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
             let mut sampler = sampler.clone();
             let (source, target) = (direct.source(scene, vertex), direct.target(scene, vertex));
             let mut reservoir = Reservoir::new();
-            for _ in 0..CANDIDATES_PER_VERTEX {
+            for _ in 0..EVALUATIONS {
                 if let Some(proposal) = source.propose(&mut || sampler.next_1d()) {
                     let score = target.score(&proposal.sample);
                     reservoir.update(proposal.sample, score, 1.0 / proposal.density, sampler.next_1d());
@@ -63,14 +63,14 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
             }
             black_box(reservoir.finish().contribution_weight());
         }
-        BLOCK * CANDIDATES_PER_VERTEX
+        BLOCK * EVALUATIONS
     };
     let samples = || {
         let Some(block) = sample_block.next() else { return 0 };
         let range = block * BLOCK..(block + 1) * BLOCK;
         let mut count = 0;
-        for ((vertex, _), candidate) in vertices[range.clone()].iter().zip(&selected[range]) {
-            if let Some(candidate) = candidate {
+        for ((vertex, _), candidates) in vertices[range.clone()].iter().zip(&selected[range]) {
+            for candidate in candidates {
                 let value = candidate.value(vertex);
                 if !value.is_black() {
                     black_box(candidate.is_visible(scene, vertex));
@@ -84,8 +84,8 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
     CostModel::measure(blocks.max(1) * ROUNDS, seconds(), candidates, samples)
 }
 
-/// Candidates that are drawn at each vertex, as in use.
-const CANDIDATES_PER_VERTEX: usize = 8;
+/// Candidates, and samples, at each vertex: in use there are several as well, and the first of them finds colder caches.
+const EVALUATIONS: usize = 8;
 /// How often each block is timed.
 const ROUNDS: usize = 4;
 /// A stream of numbers that no pixel and no light path has.

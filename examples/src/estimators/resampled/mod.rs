@@ -63,7 +63,9 @@ impl<C: EmitterChoice> ResampledDirect<'_, C> {
         scene: &'b S,
         vertex: &'b S::Vertex<'s>,
     ) -> LightSource<'b, S, S::Vertex<'s>, C> {
-        LightSource { scene, vertex, choice: &self.choice, mix: self.mix, environment: self.environment }
+        let evaluates = self.target != TargetName::GeometryVisibility;
+        let (choice, mix, environment) = (&self.choice, self.mix, self.environment);
+        LightSource { scene, vertex, choice, mix, environment, evaluates }
     }
 
     /// The target of candidates for a vertex.

@@ -62,7 +62,7 @@ impl LightPoint {
             Place::Delta => (emitter.sample_direct(from, [0.5; 2])?, 1.0),
         };
         let is_usable = measure > 0.0 && measure.is_finite() && !light.radiance.is_black();
-        is_usable.then_some((LightCandidate { emitter: self.emitter, light, is_seen: false }, measure))
+        is_usable.then_some((LightCandidate { emitter: self.emitter, light, is_seen: false, scattered: None }, measure))
     }
 }
 

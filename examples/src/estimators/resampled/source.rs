@@ -78,6 +78,8 @@ pub struct LightSource<'a, S, V, C> {
     pub mix: SourceMix,
     /// How directions to the environment are drawn.
     pub environment: EnvironmentSampling,
+    /// Whether the scattering function is evaluated for every candidate; otherwise only where it is asked for.
+    pub evaluates: bool,
 }
 
 impl<S, V, C> LightSource<'_, S, V, C>
@@ -105,7 +107,7 @@ where
         } else {
             self.scene.emitters()[id.index()].sample_direct(self.vertex.point().position, u)?
         };
-        Some(LightCandidate { emitter: id, light, is_seen: false })
+        Some(LightCandidate { emitter: id, light, is_seen: false, scattered: None })
     }
 
     /// What a scattered ray hits.
@@ -128,7 +130,7 @@ where
         }
         let pdf_solid_angle = self.pdf_of_emitter(emitter, wi, at.as_ref().map(|(at, _)| at));
         let light = DirectSample { wi, at, radiance, pdf_solid_angle, is_delta: false };
-        Some(LightCandidate { emitter, light, is_seen: true })
+        Some(LightCandidate { emitter, light, is_seen: true, scattered: None })
     }
 
     /// Density by solid angle of `sample_emitter`.
@@ -167,7 +169,8 @@ where
             self.scatter([lobe.clamp(0.0, BELOW_ONE), u[0], u[1]])?
         };
         let density = self.density(&candidate);
-        Some(Proposal { sample: candidate, density })
+        let sample = if self.evaluates { candidate.evaluated(self.vertex) } else { candidate };
+        Some(Proposal { sample, density })
     }
 
     #[inline]

@@ -1,114 +1,203 @@
 //! Figure 4: direct light in equal time.
 
-use qmc_sampling::Independent;
+use std::time::Instant;
+
+use mis_heuristics::Power;
+use qmc_sampling::{Independent, Replications, Sampler};
 use ris::Budget;
+use scene_core::{EmitterId, PowerChoice, Ray, Scene, Sensor, Spectrum, SurfacePoint, Vertex};
 use serde_json::Value;
 
 use super::{
-    Cost, at_least, at_most, blob_hdr, direct_light, papers_proposals, reduction, reported, strong_proposals,
+    at_centres, at_least, at_most, blob_hdr, direct_light, papers_proposals, reduction, reported, strong_proposals,
     with_budget,
 };
-use crate::estimators::measure_cost;
+use crate::choices::AnyChoice;
+use crate::estimators::{
+    DirectLight, NextEvent, OwnSampling, ResampledDirect, ScatterSampling, Scattered, measure_cost,
+};
 use crate::experiments::{Context, Report, Row, Setup, ratio_of_means};
-use crate::program::{Failure, RenderSettings};
-use crate::resampling::{DirectName, ResamplingSettings};
+use crate::program::Failure;
+use crate::resampling::ResamplingSettings;
 
 /// Samples of direct light at each hit of a primary ray, by importance sampling.
 const SAMPLES: f64 = 20.0;
+/// Groups of renderings: each gives an estimate of the variance.
+const GROUPS: u64 = 8;
 
-/// One choice of M and N.
-struct Candidate {
-    label: String,
+/// One way to estimate.
+struct Candidate<'a> {
+    label: &'static str,
     budget: Budget,
-    settings: RenderSettings,
-    cost: Cost,
+    technique: Technique<'a>,
+    variance: Replications,
+    seconds: Replications,
+    /// Their product, group by group.
+    cost: Replications,
+}
+
+/// What is compared.
+enum Technique<'a> {
+    Resampled(ResampledDirect<'a, AnyChoice>),
+    /// Next event estimation and a scattered ray, with the power heuristic, this often.
+    NextEvent(NextEvent<Power, PowerChoice>, u32),
 }
 
 /// For the blob without and with an environment: importance sampling with N = 20, the robust choice of M and N of equal time, and a sweep of M with
-/// the N of equal time. All take turns, so that the load of the machine hits all alike, and error times seconds is compared, so that what the
-/// cost model gets wrong is counted.
+/// the N of equal time. All take turns, so that the load of the machine hits all alike, and variance times seconds is compared, so that what
+/// the cost model gets wrong is counted. The variance is that of the luminance of direct light at the hits of rays through the centres of the pixels,
+/// mean over the pixels.
 pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failure> {
     let mut report = context.report();
-    let size = context.effort([48, 36], [160, 120]);
+    let size = context.effort([40, 30], [120, 90]);
     let mut setups = vec![Setup::builtin(context, "blob", size)?, Setup::builtin(context, "blob-environment", size)?];
     setups.extend(blob_hdr(context, size)?);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(context.threads).build()?;
     for setup in &setups {
-        let reference_settings = direct_light(setup, with_budget(&strong_proposals(), 8.0, 8.0));
-        let samples = context.effort(256, 1024);
-        let reference = setup.render(&reference_settings, samples, context.seed_of("reference", 0))?.film.develop(0);
         for (proposals, resampling) in [("paper", papers_proposals()), ("strong", strong_proposals())] {
             let mut all = candidates(context, setup, proposals, &resampling)?;
-            let trials = context.effort(12, 16);
-            for trial in 0..trials {
-                for candidate in &mut all {
-                    let what = format!("{}, {proposals}, {}", setup.scene.name(), candidate.label);
-                    let seed = context.seed_of(&what, trial);
-                    let rendering = setup.render(&candidate.settings, context.effort(1, 20), seed)?;
-                    candidate.cost.push(&rendering, &reference)?;
-                    if trial == 0 && proposals == "paper" && candidate.label != "sweep" {
-                        let name = format!("figure-4-{}-{}", setup.scene.name(), candidate.label);
-                        context.save_picture(&name, &rendering.film.develop(0), 0.0)?;
-                    }
-                }
+            for group in 0..GROUPS {
+                pool.install(|| run_group(context, setup, proposals, group, &mut all));
             }
             report_on(setup, proposals, &all, &mut report);
+            if proposals == "paper" {
+                pictures(context, setup, &all, &resampling)?;
+            }
         }
     }
     Ok(report)
 }
 
 /// Importance sampling first, then the robust choice, the sweep, and next event estimation.
-fn candidates(
+fn candidates<'a>(
     context: &Context,
     setup: &Setup,
     proposals: &str,
     resampling: &ResamplingSettings,
-) -> Result<Vec<Candidate>, Failure> {
+) -> Result<Vec<Candidate<'a>>, Failure> {
     let samplers = Independent::new(context.seed_of("cost", 0));
-    let direct = resampling.resampled(&setup.scene, &samplers, None)?;
+    let direct: ResampledDirect<'a, _> = resampling.resampled(&setup.scene, &samplers, None)?;
     let cost = measure_cost(&setup.scene, &samplers, &direct)?;
     let time = SAMPLES * (cost.candidate + cost.sample);
-    let candidate = |label: &str, budget: Budget| Candidate {
-        label: label.to_owned(),
+    let candidate = |label, budget, technique| Candidate {
+        label,
         budget,
-        settings: direct_light(setup, with_budget(resampling, budget.candidates, budget.samples)),
-        cost: Cost::default(),
+        technique,
+        variance: Replications::new(),
+        seconds: Replications::new(),
+        cost: Replications::new(),
     };
+    let resampled =
+        |label, budget| candidate(label, budget, Technique::Resampled(ResampledDirect { budget, ..direct.clone() }));
     let mut all = vec![
-        candidate("importance-sampling", Budget { candidates: 1.0, samples: SAMPLES as f32 }),
-        candidate("robust", Budget::within(f64::from(cost.robust().candidates), cost, time)),
+        resampled("importance-sampling", Budget { candidates: 1.0, samples: SAMPLES as f32 }),
+        resampled("robust", Budget::within(f64::from(cost.robust().candidates), cost, time)),
     ];
-    for m in context.effort(&[2.0, 4.0, 8.0, 16.0, 32.0][..], &[2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0]) {
-        all.push(candidate("sweep", Budget::within(*m, cost, time)));
-    }
+    let sweep = context.effort(&[2.0, 4.0, 8.0, 16.0, 32.0][..], &[2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0]);
+    all.extend(sweep.iter().map(|&m| resampled("sweep", Budget::within(m, cost, time))));
     if proposals == "strong" {
-        // The usual way: one emitter, one scattered ray, the power heuristic; as often as importance sampling samples.
-        let mut nee = candidate("next-event", Budget { candidates: 1.0, samples: 1.0 });
-        nee.settings.resampling = ResamplingSettings { direct: DirectName::Nee, ..ResamplingSettings::default() };
-        all.push(nee);
+        let next_event = NextEvent { heuristic: Power::TWO, choice: PowerChoice::new(setup.scene.emitters()) };
+        let times = SAMPLES as u32 / 2;
+        let budget = Budget { candidates: 1.0, samples: times as f32 };
+        all.push(candidate("next-event", budget, Technique::NextEvent(next_event, times)));
     }
     Ok(all)
 }
 
-fn report_on(setup: &Setup, proposals: &str, all: &[Candidate], report: &mut Report) {
+/// Some renderings by every candidate, in turn.
+fn run_group(context: &Context, setup: &Setup, proposals: &str, group: u64, all: &mut [Candidate<'_>]) {
+    let renderings = context.effort(16, 32);
+    let [width, height] = setup.scene.sensor().resolution();
+    let mut pixels = vec![vec![Replications::new(); width as usize * height as usize]; all.len()];
+    let mut seconds = vec![0.0; all.len()];
+    for rendering in 0..renderings {
+        for (k, candidate) in all.iter().enumerate() {
+            let what = format!("{}, {proposals}, {k}", setup.scene.name());
+            let seed = context.seed_of(&what, group * renderings + rendering);
+            let start = Instant::now();
+            let values = at_centres(setup, &candidate.technique, seed);
+            seconds[k] += start.elapsed().as_secs_f64() / renderings as f64;
+            pixels[k].iter_mut().zip(values).for_each(|(pixel, value)| pixel.push(value));
+        }
+    }
+    for ((candidate, pixels), seconds) in all.iter_mut().zip(pixels).zip(seconds) {
+        let variance = pixels.iter().map(Replications::variance).sum::<f64>() / pixels.len() as f64;
+        candidate.variance.push(variance);
+        candidate.seconds.push(seconds);
+        candidate.cost.push(variance * seconds);
+    }
+}
+
+impl DirectLight for Technique<'_> {
+    fn sample<S: Scene>(
+        &self,
+        scene: &S,
+        vertex: &S::Vertex<'_>,
+        length: u32,
+        wanted: bool,
+        sampler: &mut impl Sampler,
+    ) -> S::Spectrum {
+        match self {
+            Self::Resampled(direct) => direct.sample(scene, vertex, length, wanted, sampler),
+            Self::NextEvent(direct, times) => next_event(direct, *times, scene, vertex, sampler),
+        }
+    }
+
+    fn scattering_weight<S: Scene>(
+        &self,
+        _: &S,
+        _: Scattered<'_>,
+        _: &Ray,
+        _: EmitterId,
+        _: Option<&SurfacePoint>,
+    ) -> f32 {
+        0.0
+    }
+}
+
+/// Both techniques of next event estimation at one vertex, `times` each.
+fn next_event<S: Scene>(
+    direct: &NextEvent<Power, PowerChoice>,
+    times: u32,
+    scene: &S,
+    vertex: &S::Vertex<'_>,
+    sampler: &mut impl Sampler,
+) -> S::Spectrum {
+    let mut sum = S::Spectrum::ZERO;
+    for _ in 0..times {
+        sum += direct.sample(scene, vertex, 1, true, sampler);
+        let Some(sample) = OwnSampling.scatter(vertex, 1, sampler) else { continue };
+        let ray = vertex.spawn_ray(sample.wi);
+        let from = Scattered { point: vertex.point(), pdf_solid_angle: sample.pdf_solid_angle };
+        let hit = scene.intersect(&ray);
+        let (emitter, emitted) = match &hit {
+            Some(hit) => (hit.emitter(), hit.emitted()),
+            None => (scene.environment(), scene.environment_radiance(ray.direction)),
+        };
+        let Some(id) = emitter else { continue };
+        let at = hit.as_ref().map(Vertex::point);
+        let weight = if sample.is_specular { 1.0 } else { direct.scattering_weight(scene, from, &ray, id, at) };
+        sum += sample.throughput * emitted * weight;
+    }
+    sum * (1.0 / times as f32)
+}
+
+fn report_on(setup: &Setup, proposals: &str, all: &[Candidate<'_>], report: &mut Report) {
     let scene = setup.scene.name();
     for candidate in all {
         let params = [
             ("proposals", Value::from(proposals)),
-            ("choice", candidate.label.clone().into()),
+            ("choice", candidate.label.into()),
             ("M", f64::from(candidate.budget.candidates).into()),
             ("N", f64::from(candidate.budget.samples).into()),
-            ("error times seconds", candidate.cost.by_seconds.mean().into()),
-            ("error times rays", candidate.cost.by_rays.mean().into()),
+            ("variance times seconds", candidate.cost.mean().into()),
         ];
-        report.rows.push(candidate.cost.trials.fill(Row::new(scene, "direct", params)));
+        let (variance, seconds) = (candidate.variance.mean(), candidate.seconds.mean());
+        report.rows.push(Row { variance, seconds, ..Row::new(scene, "direct", params) });
     }
-    let importance = &all[0].cost.by_seconds;
-    let robust = &all[1].cost.by_seconds;
+    let (importance, robust) = (&all[0].cost, &all[1].cost);
     let of_resampling = all.iter().filter(|candidate| candidate.label != "next-event");
-    let Some(best) = of_resampling.min_by(|a, b| a.cost.by_seconds.mean().total_cmp(&b.cost.by_seconds.mean())) else {
-        return;
-    };
+    let Some(best) = of_resampling.min_by(|a, b| a.cost.mean().total_cmp(&b.cost.mean())) else { return };
     let gain = reduction(ratio_of_means(robust, importance));
     let id = format!("{scene}-{proposals}-variance-reduction-of-the-robust-choice");
     report.claims.push(match (proposals, scene) {
@@ -117,11 +206,28 @@ fn report_on(setup: &Setup, proposals: &str, all: &[Candidate], report: &mut Rep
         _ => reported(id, gain),
     });
     let id = format!("{scene}-{proposals}-robust-over-best-choice");
-    report.claims.push(at_most(id, ratio_of_means(robust, &best.cost.by_seconds), 2.0));
-    if let Some(nee) = all.iter().find(|candidate| candidate.label == "next-event") {
-        let gain = reduction(ratio_of_means(robust, &nee.cost.by_seconds));
+    report.claims.push(at_most(id, ratio_of_means(robust, &best.cost), 2.0));
+    if let Some(next_event) = all.iter().find(|candidate| candidate.label == "next-event") {
+        let gain = reduction(ratio_of_means(robust, &next_event.cost));
         report
             .claims
             .push(reported(format!("{scene}-{proposals}-variance-reduction-over-next-event-estimation"), gain));
     }
+}
+
+/// The two images of the figure, with 20 primary rays.
+fn pictures(
+    context: &Context,
+    setup: &Setup,
+    all: &[Candidate<'_>],
+    resampling: &ResamplingSettings,
+) -> Result<(), Failure> {
+    for candidate in &all[..2] {
+        let Budget { candidates, samples } = candidate.budget;
+        let settings = direct_light(setup, with_budget(resampling, candidates, samples));
+        let rendering = setup.render(&settings, context.effort(1, 20), context.seed_of("picture", 0))?;
+        let name = format!("figure-4-{}-{}", setup.scene.name(), candidate.label);
+        context.save_picture(&name, &rendering.film.develop(0), 0.0)?;
+    }
+    Ok(())
 }

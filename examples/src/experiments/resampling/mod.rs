@@ -14,14 +14,15 @@ pub(super) use reuse::measure as reuse;
 
 use std::sync::Arc;
 
-use qmc_sampling::Replications;
-use scene_core::builtin;
+use qmc_sampling::{Independent, Replications, SamplerFamily};
+use rayon::prelude::*;
 use scene_core::texture::{ColorSpace, Image};
+use scene_core::{Scene, Sensor, Spectrum, Vertex, builtin};
 
 use super::setup::asset_file;
 use super::{Claim, Context, Ratio, Setup, Trials};
 use crate::choices::LightSelection;
-use crate::estimators::{EnvironmentSampling, SourceMix};
+use crate::estimators::{DirectLight, EnvironmentSampling, SourceMix};
 use crate::program::{EstimatorName, Failure, RenderSettings};
 use crate::resampling::{Candidates, DirectName, ResamplingSettings};
 use crate::samplers::SamplerName;
@@ -59,6 +60,20 @@ fn direct_light(setup: &Setup, resampling: ResamplingSettings) -> RenderSettings
 
 fn with_budget(resampling: &ResamplingSettings, candidates: f32, samples: f32) -> ResamplingSettings {
     ResamplingSettings { candidates: Candidates::Count(candidates), samples, ..resampling.clone() }
+}
+
+/// The luminance of direct light at what the ray through the centre of each pixel hits, once: nothing but the direct light varies.
+fn at_centres(setup: &Setup, direct: &impl DirectLight, seed: u64) -> Vec<f64> {
+    let [width, height] = setup.scene.sensor().resolution();
+    let (scene, samplers) = (&setup.scene, Independent::new(seed));
+    let value = |pixel: u32| {
+        let (x, y) = (pixel % width, pixel / width);
+        let ray = scene.sensor().sample_ray([x as f32 + 0.5, y as f32 + 0.5], [0.5; 2]).ray;
+        let vertex = scene.intersect(&ray).filter(Vertex::is_connectible);
+        let mut sampler = samplers.sampler(u64::from(pixel), 0);
+        vertex.map_or(0.0, |vertex| f64::from(direct.sample(scene, &vertex, 1, true, &mut sampler).luminance()))
+    };
+    (0..width * height).into_par_iter().map(value).collect()
 }
 
 /// The blob under a photographed sky, if the image is there.

@@ -9,11 +9,12 @@ use scene_core::film::LayeredImage;
 use scene_core::{Scene, Sensor, Spectrum, Vertex};
 use serde_json::Value;
 
-use super::{at_least, direct_light, papers_proposals, reported, with_budget};
+use super::{at_centres, at_least, direct_light, papers_proposals, reported, with_budget};
 use crate::choices::AnyChoice;
-use crate::estimators::{DirectLight, ResampledDirect, measure_cost};
+use crate::estimators::{EnvironmentSampling, ResampledDirect, measure_cost};
 use crate::experiments::{Claim, Context, Ratio, Report, Row, Setup};
 use crate::program::Failure;
+use crate::resampling::ResamplingSettings;
 
 /// The two settings of the figure, of equal time in the paper.
 const FEW: Budget = Budget { candidates: 1.0, samples: 20.0 };
@@ -27,7 +28,9 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     let mut report = context.report();
     let size = context.effort([48, 36], [160, 120]);
     let setup = Setup::builtin(context, "blob-environment", size)?;
-    let resampling = papers_proposals();
+    // With uniform directions the sun would be found so seldom that no estimate of a pixel's e1, e2, e3 would be worth anything.
+    let environment_candidates = EnvironmentSampling::Importance;
+    let resampling = ResamplingSettings { environment_candidates, ..papers_proposals() };
     let samplers = Independent::new(context.seed_of("models", 0));
     let direct = resampling.resampled(&setup.scene, &samplers, None)?;
     let cost = measure_cost(&setup.scene, &samplers, &direct)?;
@@ -43,7 +46,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         let mut pixels = vec![Replications::new(); optimal.len()];
         let start = Instant::now();
         for trial in 0..trials {
-            let values = render(&setup, &direct, context.seed_of(name, trial));
+            let values = at_centres(&setup, &direct, context.seed_of(name, trial));
             pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.push(value));
         }
         let seconds = start.elapsed().as_secs_f64() / trials as f64;
@@ -148,20 +151,6 @@ fn models(setup: &Setup, direct: &Direct<'_>, samplers: &Independent, count: u32
         }
     }
     map
-}
-
-/// The luminance of direct light at the centre of each pixel, once.
-fn render(setup: &Setup, direct: &Direct<'_>, seed: u64) -> Vec<f64> {
-    let [width, height] = setup.scene.sensor().resolution();
-    let (scene, samplers) = (&setup.scene, Independent::new(seed));
-    let value = |pixel: u32| {
-        let (x, y) = (pixel % width, pixel / width);
-        let ray = scene.sensor().sample_ray([x as f32 + 0.5, y as f32 + 0.5], [0.5; 2]).ray;
-        let vertex = scene.intersect(&ray).filter(Vertex::is_connectible);
-        let mut sampler = samplers.sampler(u64::from(pixel), 0);
-        vertex.map_or(0.0, |vertex| f64::from(direct.sample(scene, &vertex, 1, true, &mut sampler).luminance()))
-    };
-    (0..width * height).into_par_iter().map(value).collect()
 }
 
 /// The variance of each pixel that its model predicts.
