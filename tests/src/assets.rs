@@ -27,6 +27,15 @@ pub fn modern_hall() -> Option<SceneDescription> {
     Some(load_description(&path.to_string_lossy(), &[]).expect("a scene that is known to load"))
 }
 
+/// The hall `many-lights`: 4501 balls that shine, in LuxCore's format.
+///
+/// # Panics
+/// If it is there and cannot be loaded.
+pub fn many_lights() -> Option<SceneDescription> {
+    let path = asset("many-lights/scene.scn")?;
+    Some(load_description(&path.to_string_lossy(), &[]).expect("a scene that is known to load"))
+}
+
 /// The builtin blob under the environment map `spiaggia_di_mondello_1k.hdr`, turned by `degrees` about the vertical.
 ///
 /// # Panics

@@ -53,6 +53,7 @@ fn the_scenes_render() {
     renders_something("veach-mis/scene.xml", [48, 27], 0.9);
     renders_something("living-room/scene_mi3.xml", [48, 27], 0.4);
     renders_something("modern-hall/scene_mi3.xml", [48, 27], 0.9);
+    renders_something("many-lights/scene.scn", [48, 27], 0.9);
     // A small lamp below waves: few paths find it.
     renders_something("water-caustic/scene_mi3.xml", [32, 32], 0.2);
 }

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use scene_core::SceneDescription;
 use scene_core::builtin::Builtin;
-use scene_core::mitsuba::{self, ImportError};
+use scene_core::{SceneDescription, luxcore, mitsuba};
 
 /// Why there is no scene.
 #[derive(Debug, thiserror::Error)]
@@ -14,14 +13,17 @@ pub enum LoadError {
     #[error("'{0}' is neither a builtin scene (see 'lichtwerk list') nor a file")]
     Unknown(String),
     /// A file of another kind.
-    #[error("{0}: unknown kind of scene file; Mitsuba 3 XML (.xml) can be read")]
+    #[error("{0}: unknown kind of scene file; Mitsuba 3 XML (.xml) and LuxCore properties (.scn) can be read")]
     Kind(String),
     /// Parameters for something that has none.
-    #[error("the builtin scene '{0}' takes no parameters (-D)")]
+    #[error("'{0}' takes no parameters (-D); only Mitsuba 3 XML does")]
     Parameters(String),
-    /// The importer.
+    /// The importer for Mitsuba's format.
     #[error(transparent)]
-    Import(#[from] ImportError),
+    Import(#[from] mitsuba::ImportError),
+    /// The importer for LuxCore's format.
+    #[error(transparent)]
+    LuxCore(#[from] luxcore::ImportError),
 }
 
 /// The description of a builtin scene or of a file.
@@ -39,6 +41,8 @@ pub fn load_description(scene: &str, definitions: &[(String, String)]) -> Result
     let path = Path::new(scene);
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("xml") => Ok(mitsuba::load(path, definitions)?),
+        Some("scn") if !definitions.is_empty() => Err(LoadError::Parameters(scene.to_owned())),
+        Some("scn") => Ok(luxcore::load(path)?),
         _ if path.exists() => Err(LoadError::Kind(scene.to_owned())),
         _ => Err(LoadError::Unknown(scene.to_owned())),
     }
@@ -53,6 +57,8 @@ mod tests {
         let message = |scene: &str| load_description(scene, &[]).unwrap_err().to_string();
         assert!(message("nowhere").contains("'nowhere' is neither"));
         assert!(message("nowhere.xml").contains("nowhere.xml"));
+        assert!(message("nowhere.scn").contains("cannot read nowhere.scn"));
+        assert!(load_description("nowhere.scn", &[("a".into(), "b".into())]).unwrap_err().to_string().contains("(-D)"));
         assert!(message("Cargo.toml").contains("Cargo.toml: unknown kind"));
         assert!(load_description("furnace", &[("a".into(), "b".into())]).is_err());
         assert!(load_description("furnace", &[]).is_ok());

@@ -13,7 +13,7 @@ use super::raw_mesh::{MeshFileError, RawMesh};
 ///
 /// # Errors
 /// A malformed header, fewer bytes than it promises, an index that no vertex has.
-pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
+pub(crate) fn read(bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = Parser::<Skipped>::new().read_header(&mut reader).map_err(message)?;
     let mut mesh = RawMesh::default();

@@ -8,46 +8,46 @@ use crate::reference::{MeshError, TriangleMesh};
 /// Why a mesh file cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}{message}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
-pub(super) struct MeshFileError {
+pub(crate) struct MeshFileError {
     line: Option<usize>,
     message: String,
 }
 
 impl MeshFileError {
-    pub(super) fn new(message: impl Into<String>) -> Self {
+    pub(crate) fn new(message: impl Into<String>) -> Self {
         Self { line: None, message: message.into() }
     }
 
-    pub(super) fn at_line(line: usize, message: impl Into<String>) -> Self {
+    pub(crate) fn at_line(line: usize, message: impl Into<String>) -> Self {
         Self { line: Some(line), message: message.into() }
     }
 }
 
 /// The content of a mesh file. `normals` and `uvs` may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct RawMesh {
-    pub(super) positions: Vec<[f32; 3]>,
-    pub(super) normals: Vec<[f32; 3]>,
-    pub(super) uvs: Vec<[f32; 2]>,
-    pub(super) triangles: Vec<[u32; 3]>,
+pub(crate) struct RawMesh {
+    pub(crate) positions: Vec<[f32; 3]>,
+    pub(crate) normals: Vec<[f32; 3]>,
+    pub(crate) uvs: Vec<[f32; 2]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// Whether the file asks for flat shading.
-    pub(super) face_normals: bool,
+    pub(crate) face_normals: bool,
 }
 
 /// How a mesh is to be read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct MeshOptions {
+pub(crate) struct MeshOptions {
     /// Flat shading, whatever normals there are.
-    pub(super) face_normals: bool,
+    pub(crate) face_normals: bool,
     /// Turns all normals round.
-    pub(super) flip_normals: bool,
+    pub(crate) flip_normals: bool,
     /// `v` becomes `1 - v`.
-    pub(super) flip_tex_coords: bool,
+    pub(crate) flip_tex_coords: bool,
 }
 
 impl RawMesh {
     /// How many triangles have vertices that are not finite.
-    pub(super) fn count_not_finite(&self) -> usize {
+    pub(crate) fn count_not_finite(&self) -> usize {
         let is_finite =
             |&vertex: &u32| self.positions.get(vertex as usize).is_none_or(|p| p.iter().all(|x| x.is_finite()));
         self.triangles.iter().filter(|triangle| !triangle.iter().all(is_finite)).count()
@@ -57,7 +57,7 @@ impl RawMesh {
     ///
     /// Mitsuba moves vertices to the world before anything else. Two things depend on that: smooth normals, which it
     /// computes where a file has none, and the side to which flat triangles of a mirrored mesh face.
-    pub(super) fn finish(mut self, options: MeshOptions, to_world: &Affine3A) -> Result<TriangleMesh, MeshError> {
+    pub(crate) fn finish(mut self, options: MeshOptions, to_world: &Affine3A) -> Result<TriangleMesh, MeshError> {
         let is_flat = options.face_normals || self.face_normals;
         let has_own_normals = !self.normals.is_empty() && !is_flat;
         let mut reverse = options.flip_normals;
