@@ -17,6 +17,9 @@ use crate::{Budget, Float, Reservoir, Source, Target, Uniform};
 /// **Unbiased** if `f(x) != 0` implies `g(x) > 0` and `p(x) > 0`. With `M = 1` it is importance sampling, bit for bit: the
 /// target is then never asked, so that only `p > 0` matters.
 ///
+/// **Numbers** are drawn in this order: one to round `N`; for each sample one to round `M`, then for each candidate what the
+/// source takes and one to select. Integers are not rounded, and with `M = 1` and where the source draws nothing, nothing is selected.
+///
 /// **Bad input.** As [`Reservoir`]'s; with `M = 1`, too, a candidate whose density is zero or NaN adds nothing.
 ///
 /// **Cost.** `N (M T_X + T_Y)`, with `T_X` for drawing a candidate and evaluating `g`, `T_Y` for evaluating `f`.

@@ -26,6 +26,21 @@ pub struct Selected<X, F = f32> {
 ///
 /// There may be no sample: if all candidates had weight zero, or there were none. Estimates are then zero.
 ///
+/// It is a sample with a weight, and no estimate by itself: what is to be estimated has to be said.
+///
+/// ```
+/// use ris::{Proposal, Reservoir};
+/// let picked = Reservoir::stream([Proposal { sample: 0.5, density: 2.0 }], &|x: &f64| *x, &mut || 0.5);
+/// let radiance: f64 = 0.25 + picked.estimate(|x| x * x);
+/// assert_eq!(radiance, 0.375);
+/// ```
+///
+/// ```compile_fail,E0277
+/// use ris::{Proposal, Reservoir};
+/// let picked = Reservoir::stream([Proposal { sample: 0.5, density: 2.0 }], &|x: &f64| *x, &mut || 0.5);
+/// let radiance: f64 = 0.25 + picked;
+/// ```
+///
 /// A `Resampled` is itself a candidate for the next resampling, with `W` in place of `1/p`:
 /// [`Reservoir::merge`](crate::Reservoir::merge), [`Pairwise`](crate::Pairwise).
 ///

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use ris::baselines::{ImportanceSampling, RejectionSampling, Tabulated1d, Tabulated2d, WeightedImportanceSampling};
 use ris::{
     AliasTable, BalanceWeights, Batch, Budget, Combination, OneNumber, Pairwise, PrefixSums, Proposal, Resampled,
-    Reservoir, Ris, Selected, Sources, Uniform, VarianceModel, balance, from_fn, resample_sources,
+    Reservoir, Ris, Selected, Source, Sources, Uniform, VarianceModel, balance, from_fn, resample_sources,
 };
 
 const STRANGE: [f32; 15] = [
@@ -281,6 +281,12 @@ fn tables_stay_in_their_domain() {
         assert!((-1.0..=2.0).contains(&x), "{u}: {x}");
         let [x, y] = plane.sample([u, u]);
         assert!((-1.0..=2.0).contains(&x) && (0.0..=1.0).contains(&y), "{u}: {x} {y}");
+    }
+    // The largest number leads to the edge of a cell of density zero, and has the density of its own cell.
+    let edge = Tabulated1d::new(|x| if x < 2.0 { 1.0 } else { 0.0 }, [0.0, 3.0], 3).unwrap();
+    for u in [0.5 - f64::EPSILON / 4.0, 1.0 - f64::EPSILON / 2.0] {
+        let proposal = edge.propose(&mut || u).unwrap();
+        assert!(proposal.sample <= 2.0 && proposal.density == 0.5, "{proposal:?}");
     }
     for x in [f64::NAN, f64::INFINITY, -1.1, 2.1] {
         assert_eq!((table.pdf(x), plane.pdf([x, 0.5]), plane.pdf([0.5, x])), (0.0, 0.0, 0.0));

@@ -84,16 +84,22 @@ impl Tabulated1d {
 
     /// The point with `u` in `[0, 1)` of the probability below it.
     pub fn sample(&self, u: f64) -> f64 {
-        let [low, high] = self.domain;
+        self.sample_with_pdf(u).0
+    }
+
+    /// The point and its density, that of the cell which was selected: rounding may move the point to the edge of the next
+    /// one, where the density may be zero.
+    fn sample_with_pdf(&self, u: f64) -> (f64, f64) {
+        let ([low, high], cells) = (self.domain, self.sums.len() as f64);
         let (cell, rest) = self.sums.select_with_rest(u).unwrap_or((0, 0.0));
-        low + (high - low) * (cell as f64 + rest) / self.sums.len() as f64
+        (low + (high - low) * (cell as f64 + rest) / cells, self.sums.probability(cell) * cells / (high - low))
     }
 }
 
 impl Source<f64, f64> for Tabulated1d {
     fn propose(&self, uniform: &mut impl Uniform<f64>) -> Option<Proposal<f64, f64>> {
-        let sample = self.sample(uniform.next_uniform());
-        Some(Proposal { sample, density: self.pdf(sample) })
+        let (sample, density) = self.sample_with_pdf(uniform.next_uniform());
+        Some(Proposal { sample, density })
     }
     fn density(&self, x: &f64) -> f64 {
         self.pdf(*x)
@@ -143,18 +149,25 @@ impl Tabulated2d {
     }
 
     /// The point for two numbers in `[0, 1)`: the second chooses the row.
-    pub fn sample(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let [low, high] = self.domain;
+    pub fn sample(&self, numbers: [f64; 2]) -> [f64; 2] {
+        self.sample_with_pdf(numbers).0
+    }
+
+    fn sample_with_pdf(&self, [u, v]: [f64; 2]) -> ([f64; 2], f64) {
+        let ([low, high], rows) = (self.domain, self.rows.len() as f64);
         let (row, rest) = self.marginal.select_with_rest(v).unwrap_or((0, 0.0));
-        [self.rows[row].sample(u), low + (high - low) * (row as f64 + rest) / self.rows.len() as f64]
+        let (x, pdf) = self.rows[row].sample_with_pdf(u);
+        (
+            [x, low + (high - low) * (row as f64 + rest) / rows],
+            self.marginal.probability(row) * rows / (high - low) * pdf,
+        )
     }
 }
 
 impl Source<[f64; 2], f64> for Tabulated2d {
     fn propose(&self, uniform: &mut impl Uniform<f64>) -> Option<Proposal<[f64; 2], f64>> {
-        let u = [uniform.next_uniform(), uniform.next_uniform()];
-        let sample = self.sample(u);
-        Some(Proposal { sample, density: self.pdf(sample) })
+        let (sample, density) = self.sample_with_pdf([uniform.next_uniform(), uniform.next_uniform()]);
+        Some(Proposal { sample, density })
     }
     fn density(&self, x: &[f64; 2]) -> f64 {
         self.pdf(*x)
