@@ -1,0 +1,33 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+mod caustics;
+mod deposition;
+mod direction;
+mod flux;
+mod guidance;
+mod kernel;
+mod lights;
+mod partition;
+mod photon;
+mod photons;
+mod progressive;
+mod projection;
+mod sphere;
+mod vector;
+
+pub use caustics::{CausticRule, CausticRuleError, LastBounce};
+pub use deposition::{Bound, BoundError, Deposition, DepositionExt, KeepAll};
+pub use flux::Flux;
+pub use guidance::{DirectionalHistogram, GuidanceError, Guide, GuidedDirection};
+pub use kernel::{Cone, Kernel, KernelError};
+pub use lights::{
+    Allocation, ContributingLights, LightSelection, LightTable, LightTableError, SelectionError, ShadowRay, ShadowRays,
+};
+pub use partition::{MapPartition, PartitionError, PhotonMaps};
+pub use photon::{Importon, PackedPhoton, Photon};
+pub use photons::Photons;
+pub use progressive::{ProgressiveError, ProgressivePoint, ProgressiveRadius};
+pub use projection::{Cell, ProjectionError, ProjectionMap};
+pub use sphere::{direction as sphere_direction, square as sphere_square};

@@ -1,0 +1,9 @@
+//! Direct light from many lights: which contribute, and which get shadow rays.
+
+mod contributing;
+mod selection;
+mod table;
+
+pub use contributing::ContributingLights;
+pub use selection::{Allocation, LightSelection, SelectionError, ShadowRay, ShadowRays};
+pub use table::{LightTable, LightTableError};
