@@ -1,0 +1,57 @@
+//! Collects the nearest of many neighbours.
+
+use crate::neighbor::Neighbor;
+
+/// Keeps the `k` nearest neighbours it is shown, in a vector of the caller's.
+///
+/// They are collected unsorted up to a multiple of `k`, then all but the nearest `k` are dropped by quickselect, which is
+/// linear; a heap would have to be mended for each. The bound shrinks whenever some are dropped.
+pub(crate) struct Closest<'a> {
+    k: usize,
+    /// Neighbours collected before some are dropped.
+    full: usize,
+    /// Neighbours after this one are not wanted.
+    last: Neighbor,
+    found: &'a mut Vec<Neighbor>,
+}
+
+impl<'a> Closest<'a> {
+    /// For the nearest `k > 0` up to a squared radius.
+    pub(crate) fn new(k: usize, radius_squared: f32, found: &'a mut Vec<Neighbor>) -> Self {
+        found.clear();
+        let full = k.saturating_mul(4).max(256);
+        Self { k, full, last: Neighbor::new(u32::MAX, radius_squared), found }
+    }
+
+    #[inline(always)]
+    pub(crate) fn push(&mut self, neighbor: Neighbor) {
+        if neighbor <= self.last {
+            self.found.push(neighbor);
+            if self.found.len() >= self.full {
+                self.shrink();
+            }
+        }
+    }
+
+    /// Neighbours that were not dropped.
+    #[inline(always)]
+    pub(crate) fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Drops all but the nearest `k`.
+    #[cold]
+    pub(crate) fn shrink(&mut self) {
+        if self.found.len() > self.k {
+            let (_, last, _) = self.found.select_nth_unstable(self.k - 1);
+            self.last = *last;
+            self.found.truncate(self.k);
+        }
+    }
+
+    /// Leaves the nearest `k`, sorted.
+    pub(crate) fn finish(mut self) {
+        self.shrink();
+        self.found.sort_unstable();
+    }
+}
