@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 ///
 /// The disk is open: a photon at distance `r` does not count. So the `k`-th nearest photon, whose distance is the radius,
 /// is left out, and that is what makes estimates from the nearest photons unbiased on a uniform sheet: see
-/// `Gather::Nearest`.
+/// [`Gather::nearest`](crate::Gather::nearest).
 ///
 /// | kernel | bias `1/2 mu_2 r^2 laplacian(E)`, `mu_2 =` | variance relative to constant, same `r` |
 /// |---|---|---|

@@ -3,10 +3,12 @@
 #![deny(missing_docs)]
 
 mod caustics;
+mod density;
 mod deposition;
 mod direction;
 mod flux;
 mod guidance;
+mod importance;
 mod kernel;
 mod lights;
 mod partition;
@@ -18,12 +20,15 @@ mod sphere;
 mod vector;
 
 pub use caustics::{CausticRule, CausticRuleError, LastBounce};
+pub use density::{DensityEstimation, Estimate, Gather, GatherError, GatherPoint, MapError, PhotonMap, Scratch};
 pub use deposition::{Bound, BoundError, Deposition, DepositionExt, KeepAll};
 pub use flux::Flux;
 pub use guidance::{DirectionalHistogram, GuidanceError, Guide, GuidedDirection};
+pub use importance::{AnyDirection, DirectionWeight, ImportanceMap, ImportanceScale, ImportonDeposition, ScaleError};
 pub use kernel::{Cone, Kernel, KernelError};
 pub use lights::{
-    Allocation, ContributingLights, LightSelection, LightTable, LightTableError, SelectionError, ShadowRay, ShadowRays,
+    Allocation, ContributingLights, LightSelection, LightTable, LightTableError, PrimaryPhotonMap, PrimaryPhotons,
+    SelectionError, ShadowRay, ShadowRays,
 };
 pub use partition::{MapPartition, PartitionError, PhotonMaps};
 pub use photon::{Importon, PackedPhoton, Photon};

@@ -93,6 +93,10 @@ impl<F: Flux> Photons<F> {
         &self.photons
     }
 
+    pub(crate) fn into_vec(self) -> Vec<PackedPhoton<F>> {
+        self.photons
+    }
+
     /// Gives back memory that waits for more photons.
     pub fn shrink(&mut self) {
         self.photons.shrink_to_fit();

@@ -1,6 +1,7 @@
 //! The lights that contribute to a point.
 
 use super::LightTable;
+use crate::Scratch;
 
 /// The lights that primary photons around a point came from, with the number of photons of each.
 ///
@@ -27,13 +28,15 @@ pub struct ContributingLights {
     lights: Vec<(u32, u32)>,
     /// The weights of the lights before each of the above, and of all: of the table that it was sealed with.
     excluded: Vec<u64>,
+    /// For queries of the nearest photons.
+    scratch: Scratch,
 }
 
 impl ContributingLights {
     /// None yet, of the lights of a table.
     #[must_use]
     pub fn new(table: &LightTable) -> Self {
-        Self { places: vec![0; table.len()], lights: Vec::new(), excluded: vec![0] }
+        Self { places: vec![0; table.len()], lights: Vec::new(), excluded: vec![0], scratch: Scratch::default() }
     }
 
     /// Of the lights of a table, these; lights that do not exist are left out.
@@ -46,19 +49,21 @@ impl ContributingLights {
 
     /// Replaces the set by these lights of a table, once for each photon; lights that do not exist are left out.
     pub fn set(&mut self, table: &LightTable, lights: impl IntoIterator<Item = u32>) {
-        self.clear();
-        self.places.resize(table.len(), 0);
+        let scratch = self.begin(table);
         lights.into_iter().for_each(|light| self.insert(light));
-        self.seal(table);
+        self.seal(table, scratch);
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Forgets everything, and lends the memory for queries until the set is sealed.
+    pub(super) fn begin(&mut self, table: &LightTable) -> Scratch {
         self.lights.clear();
-        self.excluded.truncate(1);
+        self.places.resize(table.len(), 0);
+        std::mem::take(&mut self.scratch)
     }
 
+    /// Counts a photon of a light.
     #[inline]
-    pub(crate) fn insert(&mut self, light: u32) {
+    pub(super) fn insert(&mut self, light: u32) {
         let Some(place) = self.places.get_mut(light as usize) else { return };
         match self.lights.get_mut(*place as usize) {
             Some((found, photons)) if *found == light => *photons += 1,
@@ -70,7 +75,8 @@ impl ContributingLights {
     }
 
     /// Sorts the lights and sums up their weights.
-    pub(crate) fn seal(&mut self, table: &LightTable) {
+    pub(super) fn seal(&mut self, table: &LightTable, scratch: Scratch) {
+        self.scratch = scratch;
         self.lights.sort_unstable();
         self.excluded.truncate(1);
         let mut sum = 0;

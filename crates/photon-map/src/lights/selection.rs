@@ -52,7 +52,7 @@ pub enum SelectionError {
 /// ```
 ///
 /// **Symbols.** `s_j`: what light `j` contributes, an estimate by a ray to a random place on it; `C`: the contributing lights, from
-/// `PrimaryPhotons`; `S_con`, `S_other`: rays for those in `C` and for all others; `a_j`: the weight in the [`LightTable`];
+/// [`PrimaryPhotonMap`](crate::PrimaryPhotonMap); `S_con`, `S_other`: rays for those in `C` and for all others; `a_j`: the weight in the [`LightTable`];
 /// `m_j`: importance of a contributing light. `u`: one uniform number; it makes `E n_j = e_j` exactly, and their sum `S_con` always.
 /// With fewer rays than lights this is systematic resampling, with more it is stratification with unbiased rounding: one
 /// piece of code for P2's two cases.
