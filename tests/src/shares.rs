@@ -6,9 +6,10 @@ use estimator_checks::assert_shares;
 ///
 /// Each package writes its share beside its tests; this table repeats them, so that their sum is checked when it is
 /// compiled. A test compares it with the sources.
-pub const SHARES: [(&str, f64); 17] = [
+pub const SHARES: [(&str, f64); 18] = [
     ("lichtwerk foreign scene", 1e-8),
     ("mis-heuristics", 1e-8),
+    ("photon-map", 5e-8),
     ("qmc-sampling", 1e-7),
     ("ris", 5e-8),
     ("scene-core closed forms", 1e-7),

@@ -98,7 +98,9 @@ impl Gather {
         self.count
     }
 
-    /// Calls `f` with the radius, and with id and squared distance of all points at most as far; returns the radius.
+    /// Calls `f` with the squared radius, and with id and squared distance of all points at most as far; returns the squared radius.
+    ///
+    /// Squared, because the root of the `k`-th photon's squared distance need not square to it, and that photon must not count.
     #[inline]
     pub(crate) fn for_each<I: RangeIndex>(
         &self,
@@ -107,22 +109,21 @@ impl Gather {
         scratch: &mut Scratch,
         mut f: impl FnMut(f32, usize, f32),
     ) -> f32 {
-        let Some(count) = self.count else {
-            index.for_each_within(centre, self.max_radius, |id, distance_squared| {
-                f(self.max_radius, id, distance_squared)
-            });
-            return self.max_radius;
+        let mut within = |radius: f32| {
+            let radius_squared = radius * radius;
+            index.for_each_within(centre, radius, |id, distance_squared| f(radius_squared, id, distance_squared));
+            radius_squared
         };
+        let Some(count) = self.count else { return within(self.max_radius) };
         index.k_nearest(centre, count, self.max_radius, &mut scratch.found);
         let farthest = match scratch.found.last() {
-            Some(farthest) if scratch.found.len() == count => farthest.distance(),
-            _ => self.max_radius,
+            Some(farthest) if scratch.found.len() == count => farthest.distance_squared(),
+            _ => self.max_radius * self.max_radius,
         };
         let least = self.max_radius * LEAST_RADIUS;
-        if farthest < least {
+        if farthest < least * least {
             // There may be more than `count` of them.
-            index.for_each_within(centre, least, |id, distance_squared| f(least, id, distance_squared));
-            return least;
+            return within(least);
         }
         scratch.found.iter().for_each(|neighbour| f(farthest, neighbour.id(), neighbour.distance_squared()));
         farthest
@@ -137,8 +138,8 @@ mod tests {
     fn radius(gather: Gather, points: &[[f32; 3]]) -> (f32, usize) {
         let index = BruteForce::build(points, |p| *p).unwrap();
         let mut visited = 0;
-        let radius = gather.for_each(&index, [0.0; 3], &mut Scratch::default(), |_, _, _| visited += 1);
-        (radius, visited)
+        let squared = gather.for_each(&index, [0.0; 3], &mut Scratch::default(), |_, _, _| visited += 1);
+        (squared.sqrt(), visited)
     }
 
     #[test]

@@ -167,17 +167,17 @@ impl<F: Flux, I: RangeIndex> PhotonMap<F, I> {
         mut contribution: impl FnMut(&PackedPhoton<F>) -> T,
     ) -> Estimate<T> {
         let (mut sum, mut count) = (T::ZERO, 0);
-        let radius = estimation.gather.for_each(&self.index, at.position(), scratch, |radius, id, distance_squared| {
+        let r2 = estimation.gather.for_each(&self.index, at.position(), scratch, |r2, id, distance_squared| {
             let photon = &self.photons[id];
             let Some(d2) = at.distance_squared(photon.position(), || photon.wi(), distance_squared) else { return };
-            let weight = estimation.kernel.at(f64::from(d2) / (f64::from(radius) * f64::from(radius)));
+            let weight = estimation.kernel.at(f64::from(d2) / f64::from(r2));
             if weight > 0.0 {
                 count += 1;
                 sum = sum.add(contribution(photon).scale(weight));
             }
         });
-        let scale = 1.0 / (f64::from(radius) * f64::from(radius) * self.paths as f64);
-        Estimate { value: sum.scale(scale), photons: count, radius }
+        let scale = 1.0 / (f64::from(r2) * self.paths as f64);
+        Estimate { value: sum.scale(scale), photons: count, radius: r2.sqrt() }
     }
 
     /// Number and sum of the photons that count at a point, unweighted: what [`ProgressivePoint::add`](crate::ProgressivePoint::add) takes.
@@ -191,10 +191,10 @@ impl<F: Flux, I: RangeIndex> PhotonMap<F, I> {
     ) -> (u64, T) {
         let (mut sum, mut count) = (T::ZERO, 0);
         let Ok(gather) = Gather::within(radius) else { return (count, sum) };
-        gather.for_each(&self.index, at.position(), &mut Scratch::default(), |radius, id, distance_squared| {
+        gather.for_each(&self.index, at.position(), &mut Scratch::default(), |r2, id, distance_squared| {
             let photon = &self.photons[id];
             let counted = at.distance_squared(photon.position(), || photon.wi(), distance_squared);
-            if counted.is_some_and(|d2| d2 < radius * radius) {
+            if counted.is_some_and(|d2| d2 < r2) {
                 count += 1;
                 sum = sum.add(contribution(photon));
             }

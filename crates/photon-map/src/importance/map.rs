@@ -54,19 +54,14 @@ impl<I: RangeIndex> ImportanceMap<I> {
     pub fn directions(&self, at: &GatherPoint, histogram: &mut DirectionalHistogram) {
         histogram.clear();
         let (gather, kernel) = (self.estimation.gather, self.estimation.kernel);
-        gather.for_each(
-            self.importons.index(),
-            at.position(),
-            &mut Scratch::default(),
-            |radius, id, distance_squared| {
-                let importon = &self.importons.photons()[id];
-                let counted = at.distance_squared(importon.position(), || importon.wi(), distance_squared);
-                if let Some(d2) = counted {
-                    let weight = kernel.at(f64::from(d2) / f64::from(radius).powi(2));
-                    histogram.add(importon.wi(), importon.flux() * weight as f32);
-                }
-            },
-        );
+        gather.for_each(self.importons.index(), at.position(), &mut Scratch::default(), |r2, id, distance_squared| {
+            let importon = &self.importons.photons()[id];
+            let counted = at.distance_squared(importon.position(), || importon.wi(), distance_squared);
+            if let Some(d2) = counted {
+                let weight = kernel.at(f64::from(d2) / f64::from(r2));
+                histogram.add(importon.wi(), importon.flux() * weight as f32);
+            }
+        });
     }
 
     /// The importons.
