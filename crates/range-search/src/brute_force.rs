@@ -23,7 +23,6 @@ use crate::neighbor::Neighbor;
 #[derive(Clone, Debug, Default)]
 pub struct BruteForce {
     points: Lanes,
-    ids: Vec<u32>,
     skipped: usize,
 }
 
@@ -34,21 +33,20 @@ impl BruteForce {
     /// If there are more points than ids.
     pub fn build<P>(points: &[P], position: impl Fn(&P) -> [f32; 3]) -> Result<Self, BuildError> {
         check_count(points.len())?;
-        let (ids, kept): (Vec<u32>, Vec<[f32; 3]>) =
-            (0..).zip(points.iter().map(position)).filter(|(_, point)| is_finite(*point)).unzip();
-        let skipped = points.len() - ids.len();
-        Ok(Self { points: Lanes::from_points(kept.into_iter()), ids, skipped })
+        let kept: Vec<(u32, [f32; 3])> =
+            (0..).zip(points.iter().map(position)).filter(|(_, point)| is_finite(*point)).collect();
+        Ok(Self { points: Lanes::from_points(&kept), skipped: points.len() - kept.len() })
     }
 
     /// Bytes on the heap.
     pub fn bytes(&self) -> usize {
-        self.points.bytes() + size_of::<u32>() * self.ids.capacity()
+        self.points.bytes()
     }
 }
 
 impl RangeIndex for BruteForce {
     fn len(&self) -> usize {
-        self.ids.len()
+        self.points.len()
     }
 
     fn skipped(&self) -> usize {
@@ -60,10 +58,10 @@ impl RangeIndex for BruteForce {
         &self,
         center: [f32; 3],
         radius: f32,
-        mut f: impl FnMut(usize, f32) -> ControlFlow<B>,
+        f: impl FnMut(usize, f32) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let Some(ball) = Ball::new(center, radius) else { return ControlFlow::Continue(()) };
-        self.points.scan(0..self.len(), &ball, |slot, distance_squared| f(self.ids[slot] as usize, distance_squared))
+        self.points.scan(&ball, core::iter::once(0..self.len()), f)
     }
 
     fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {

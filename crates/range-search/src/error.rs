@@ -23,8 +23,8 @@ impl fmt::Display for BuildError {
 
 impl core::error::Error for BuildError {}
 
-/// Slots and what is read beyond the last one have 32 bits.
-pub(crate) const MAX_POINTS: usize = u32::MAX as usize - 2 * crate::lanes::BLOCK;
+/// Slots have 32 bits, with those in the last block that stay empty.
+pub(crate) const MAX_POINTS: usize = u32::MAX as usize - crate::lanes::WIDTH;
 
 pub(crate) fn check_count(count: usize) -> Result<(), BuildError> {
     if count > MAX_POINTS { Err(BuildError::TooManyPoints(count)) } else { Ok(()) }

@@ -44,16 +44,15 @@ pub(super) fn build<P>(
 
     // Scatter the points. What was the start of a bucket becomes its end, and so the start of the next one.
     let len = sum as usize;
-    let (mut lanes, mut ids) = (Lanes::new(len), vec![0; len]);
+    let mut lanes = Lanes::new(len);
     for (id, (&bucket, point)) in bucket_of.iter().zip(points).enumerate() {
         if bucket != NOWHERE {
             let slot = &mut starts[bucket as usize + 1];
-            lanes.set(*slot as usize, position(point));
-            ids[*slot as usize] = id as u32;
+            lanes.set(*slot as usize, id as u32, position(point));
             *slot += 1;
         }
     }
-    Ok(HashGrid { points: lanes, ids, starts, scale, bounds, layout, skipped: points.len() - len })
+    Ok(HashGrid { points: lanes, starts, scale, bounds, layout, skipped: points.len() - len })
 }
 
 fn check(points: usize, cell_size: f32) -> Result<Scale, BuildError> {

@@ -42,7 +42,6 @@ use cells::{CellBounds, Layout, Scale};
 pub struct HashGrid {
     /// In the order of slots.
     points: Lanes,
-    ids: Vec<u32>,
     /// Where the slots of each bucket start, and where those of the last one end.
     starts: Vec<u32>,
     scale: Scale,
@@ -68,8 +67,18 @@ impl HashGrid {
     }
 
     /// The ids in the order of slots.
-    pub fn order(&self) -> &[u32] {
-        &self.ids
+    pub fn order(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        (0..self.points.len()).map(|slot| self.points.id(slot) as usize)
+    }
+
+    /// The id of the point in a slot.
+    ///
+    /// # Panics
+    /// If there is no such slot.
+    #[inline]
+    pub fn id(&self, slot: usize) -> usize {
+        assert!(slot < self.points.len(), "slot {slot} of {}", self.points.len());
+        self.points.id(slot) as usize
     }
 
     /// The position of the point in a slot.
@@ -77,8 +86,8 @@ impl HashGrid {
     /// # Panics
     /// If there is no such slot.
     pub fn position(&self, slot: usize) -> [f32; 3] {
-        assert!(slot < self.ids.len(), "slot {slot} of {}", self.ids.len());
-        self.points.get(slot)
+        assert!(slot < self.points.len(), "slot {slot} of {}", self.points.len());
+        self.points.position(slot)
     }
 
     /// Payloads in the order of slots: what belongs to `payloads[id]` comes to the slot of that id.
@@ -86,7 +95,7 @@ impl HashGrid {
     /// # Panics
     /// If there are fewer payloads than there were points.
     pub fn reorder<T: Clone>(&self, payloads: &[T]) -> Vec<T> {
-        self.ids.iter().map(|&id| payloads[id as usize].clone()).collect()
+        self.order().map(|id| payloads[id].clone()).collect()
     }
 
     /// Undoes [`reorder`](Self::reorder): what is in a slot goes to `out[id]`. Ids of points that were skipped keep what they have.
@@ -94,13 +103,13 @@ impl HashGrid {
     /// # Panics
     /// If `out` is shorter than the input was.
     pub fn restore<T: Clone>(&self, slots: &[T], out: &mut [T]) {
-        for (&id, value) in self.ids.iter().zip(slots) {
-            out[id as usize] = value.clone();
+        for (id, value) in self.order().zip(slots) {
+            out[id] = value.clone();
         }
     }
 
     /// Bytes on the heap.
     pub fn bytes(&self) -> usize {
-        self.points.bytes() + size_of::<u32>() * (self.ids.capacity() + self.starts.capacity())
+        self.points.bytes() + size_of::<u32>() * self.starts.capacity()
     }
 }

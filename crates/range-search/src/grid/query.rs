@@ -1,6 +1,6 @@
 //! Which slots a query has to look at.
 
-use core::ops::{ControlFlow, Range};
+use core::ops::ControlFlow;
 
 use super::HashGrid;
 use super::cells::{CellBounds, Layout};
@@ -9,108 +9,119 @@ use crate::closest::Closest;
 use crate::index::RangeIndex;
 use crate::neighbor::Neighbor;
 
-/// Ranges of slots of a hashed query kept on the stack. More rows than half of that need the heap.
-const FEW_RANGES: usize = 64;
+/// Ranges of slots kept on the stack. More rows than that (half of that, if hashed) need the heap.
+const FEW_RANGES: usize = 32;
+
+/// Ranges of slots.
+struct Ranges {
+    few: [(u32, u32); FEW_RANGES],
+    many: Vec<(u32, u32)>,
+    len: usize,
+}
+
+impl Ranges {
+    /// Room for so many.
+    #[inline(always)]
+    fn new(most: usize) -> Self {
+        let many = if most > FEW_RANGES { vec![(0, 0); most] } else { Vec::new() };
+        Self { few: [(0, 0); FEW_RANGES], many, len: 0 }
+    }
+
+    #[inline(always)]
+    fn all(&mut self) -> &mut [(u32, u32)] {
+        if self.many.is_empty() { &mut self.few } else { &mut self.many }
+    }
+
+    /// Adds a range, if it is not empty: without a branch, which would have to wait for memory.
+    #[inline(always)]
+    fn push(&mut self, start: u32, end: u32) {
+        let len = self.len;
+        self.all()[len] = (start, end);
+        self.len = len + usize::from(start < end);
+    }
+
+    /// Sorts ranges and makes them disjoint.
+    fn unite(&mut self) {
+        let len = self.len;
+        let ranges = &mut self.all()[..len];
+        ranges.sort_unstable();
+        let mut done = 0;
+        for (start, end) in ranges {
+            *start = done.max(*start);
+            *end = (*start).max(*end);
+            done = *end;
+        }
+    }
+}
 
 impl HashGrid {
-    /// Calls `f` with disjoint ranges of slots, in ascending order, that hold all points of the cells in a box.
+    /// Disjoint ranges of slots, in ascending order, that hold all points of the cells in a box.
     #[inline(always)]
-    pub(super) fn for_each_range<B>(
-        &self,
-        (lower, upper): ([f32; 3], [f32; 3]),
-        mut f: impl FnMut(Range<usize>) -> ControlFlow<B>,
-    ) -> ControlFlow<B> {
+    fn ranges(&self, (lower, upper): ([f32; 3], [f32; 3])) -> Ranges {
         let query = CellBounds { min: self.scale.cell(lower), max: self.scale.cell(upper) };
-        let Some(query) = self.bounds.intersect(&query) else { return ControlFlow::Continue(()) };
-        if query == self.bounds || query.rows() > self.ids.len() as u64 {
-            return f(0..self.ids.len());
+        let Some(query) = self.bounds.intersect(&query) else { return Ranges::new(0) };
+        if query == self.bounds || query.rows() > self.points.len() as u64 {
+            return self.everything();
         }
         match self.layout {
-            Layout::Dense { .. } => {
-                let (first, last) = (self.column(query.min[0]), self.column(query.max[0]) + 1);
-                for z in query.range(2) {
-                    for y in query.range(1) {
-                        let row = self.layout.row(&self.bounds, y, z) as usize;
-                        let slots = self.starts[row + first] as usize..self.starts[row + last] as usize;
-                        if !slots.is_empty() {
-                            f(slots)?;
-                        }
-                    }
-                }
-                ControlFlow::Continue(())
-            }
-            Layout::Hashed { mask } => self.for_each_hashed_range(&query, mask, &mut f),
+            Layout::Dense { .. } => self.dense_ranges(&query),
+            Layout::Hashed { mask } => self.hashed_ranges(&query, mask),
         }
     }
 
-    /// Number of a cell in its row.
+    fn everything(&self) -> Ranges {
+        let mut ranges = Ranges::new(1);
+        ranges.push(0, self.points.len() as u32);
+        ranges
+    }
+
     #[inline(always)]
-    fn column(&self, x: i32) -> usize {
-        x.wrapping_sub(self.bounds.min[0]) as u32 as usize
+    fn dense_ranges(&self, query: &CellBounds) -> Ranges {
+        let mut ranges = Ranges::new(query.rows() as usize);
+        let first = (query.min[0] - self.bounds.min[0]) as usize;
+        let columns = query.extent(0) as usize;
+        for z in query.range(2) {
+            for y in query.range(1) {
+                let first = self.layout.row(&self.bounds, y, z) as usize + first;
+                ranges.push(self.starts[first], self.starts[first + columns]);
+            }
+        }
+        ranges
     }
 
     /// Rows overlap where different cells share a bucket: their union is what has to be visited.
     #[inline(never)]
-    fn for_each_hashed_range<B>(
-        &self,
-        query: &CellBounds,
-        mask: u32,
-        f: &mut impl FnMut(Range<usize>) -> ControlFlow<B>,
-    ) -> ControlFlow<B> {
+    fn hashed_ranges(&self, query: &CellBounds, mask: u32) -> Ranges {
         let buckets = mask as usize + 1;
         let columns = query.extent(0) as usize;
         if columns >= buckets {
-            return f(0..self.ids.len());
+            return self.everything();
         }
-        let (mut on_stack, mut on_heap) = ([(0, 0); FEW_RANGES], Vec::new());
-        let most = 2 * query.rows() as usize;
-        let ranges: &mut [(u32, u32)] = if most <= FEW_RANGES {
-            &mut on_stack
-        } else {
-            on_heap.resize(most, (0, 0));
-            &mut on_heap
-        };
-        let mut count = 0;
-        let mut add = |first: usize, last: usize| {
-            let (start, end) = (self.starts[first], self.starts[last]);
-            if start < end {
-                ranges[count] = (start, end);
-                count += 1;
-            }
-        };
+        let mut ranges = Ranges::new(2 * query.rows() as usize);
         for z in query.range(2) {
             for y in query.range(1) {
                 let first = self.layout.bucket(&self.bounds, [query.min[0], y, z]) as usize;
-                add(first, (first + columns).min(buckets));
+                ranges.push(self.starts[first], self.starts[(first + columns).min(buckets)]);
                 // The rest of a row that reaches over the last bucket.
-                add(0, (first + columns).saturating_sub(buckets));
+                ranges.push(0, self.starts[(first + columns).saturating_sub(buckets)]);
             }
         }
-        let ranges = &mut ranges[..count];
-        ranges.sort_unstable();
-        let mut done = 0;
-        for &mut (start, end) in ranges {
-            if end > done {
-                f(start.max(done) as usize..end as usize)?;
-                done = end;
-            }
-        }
-        ControlFlow::Continue(())
+        ranges.unite();
+        ranges
     }
 
-    /// Calls `f` with slot and squared distance of the points in the ball.
+    /// Calls `f` with id and squared distance of the points in the ball.
     #[inline(always)]
-    fn scan<B>(&self, ball: &Ball, mut f: impl FnMut(usize, f32) -> ControlFlow<B>) -> ControlFlow<B> {
-        if ball.is_everything() {
-            return self.points.scan(0..self.ids.len(), ball, f);
-        }
-        self.for_each_range(ball.bounds(), |slots| self.points.scan(slots, ball, &mut f))
+    fn scan<B>(&self, ball: &Ball, f: impl FnMut(usize, f32) -> ControlFlow<B>) -> ControlFlow<B> {
+        let mut ranges = if ball.is_everything() { self.everything() } else { self.ranges(ball.bounds()) };
+        let len = ranges.len;
+        self.points.scan(ball, ranges.all()[..len].iter().map(|&(start, end)| start as usize..end as usize), f)
     }
 }
 
 impl RangeIndex for HashGrid {
     fn len(&self) -> usize {
-        self.ids.len()
+        self.points.len()
     }
 
     fn skipped(&self) -> usize {
@@ -122,16 +133,18 @@ impl RangeIndex for HashGrid {
         &self,
         center: [f32; 3],
         radius: f32,
-        mut f: impl FnMut(usize, f32) -> ControlFlow<B>,
+        f: impl FnMut(usize, f32) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
-        let Some(ball) = Ball::new(center, radius) else { return ControlFlow::Continue(()) };
-        self.scan(&ball, |slot, distance_squared| f(self.ids[slot] as usize, distance_squared))
+        match Ball::new(center, radius) {
+            Some(ball) => self.scan(&ball, f),
+            None => ControlFlow::Continue(()),
+        }
     }
 
     /// Looks within growing radii, until there are enough points or no larger radius.
     fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
         out.clear();
-        if k == 0 || self.ids.is_empty() || Ball::new(center, max_radius).is_none() {
+        if k == 0 || self.points.len() == 0 || Ball::new(center, max_radius).is_none() {
             return;
         }
         let mut radius = self.first_radius(center, k).min(max_radius);
@@ -141,7 +154,7 @@ impl RangeIndex for HashGrid {
                 closest.push(Neighbor::new(id as u32, distance_squared));
             });
             // Points that were not found are farther away than those that were.
-            if closest.len() >= k.min(self.ids.len()) || radius >= max_radius {
+            if closest.len() >= k.min(self.points.len()) || radius >= max_radius {
                 return closest.finish();
             }
             radius = grown(radius, closest.len(), k).min(max_radius);
