@@ -40,7 +40,6 @@ impl<'a> Closest<'a> {
     }
 
     /// Drops all but the nearest `k`.
-    #[cold]
     pub(crate) fn shrink(&mut self) {
         if self.found.len() > self.k {
             let (_, last, _) = self.found.select_nth_unstable(self.k - 1);
@@ -51,7 +50,10 @@ impl<'a> Closest<'a> {
 
     /// Leaves the nearest `k`, sorted.
     pub(crate) fn finish(mut self) {
-        self.shrink();
+        if self.found.len() > 2 * self.k {
+            self.shrink();
+        }
         self.found.sort_unstable();
+        self.found.truncate(self.k);
     }
 }

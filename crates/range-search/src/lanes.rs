@@ -22,6 +22,27 @@ struct Block {
 impl Block {
     /// Points that no ball contains.
     const EMPTY: Self = Self { x: [f32::NAN; WIDTH], y: [f32::NAN; WIDTH], z: [f32::NAN; WIDTH], ids: [0; WIDTH] };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, id: u32, [x, y, z]: [f32; 3]) {
+        (self.x[lane], self.y[lane], self.z[lane], self.ids[lane]) = (x, y, z, id);
+    }
+
+    /// Sets all bits of the lanes whose points are in the ball. Without branches, and in a form that compilers turn into vector
+    /// instructions, four lanes wide even if all they know is SSE2.
+    #[inline(always)]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "over three arrays and a fourth, and only so it becomes vector instructions"
+    )]
+    fn test(&self, ball: &Ball, inside: &mut [u32; WIDTH], distances: &mut [f32; WIDTH]) {
+        for lane in 0..WIDTH {
+            distances[lane] = distance_squared([self.x[lane], self.y[lane], self.z[lane]], ball.center);
+        }
+        for lane in 0..WIDTH {
+            inside[lane] = if distances[lane] <= ball.radius_squared { u32::MAX } else { 0 };
+        }
+    }
 }
 
 /// Points in slots, blocks of structure of arrays.
@@ -64,9 +85,27 @@ impl Lanes {
     }
 
     #[inline(always)]
-    pub(crate) fn set(&mut self, slot: usize, id: u32, [x, y, z]: [f32; 3]) {
-        let (block, lane) = (&mut self.blocks[slot / WIDTH], slot % WIDTH);
-        (block.x[lane], block.y[lane], block.z[lane], block.ids[lane]) = (x, y, z, id);
+    pub(crate) fn set(&mut self, slot: usize, id: u32, point: [f32; 3]) {
+        self.blocks[slot / WIDTH].set(slot % WIDTH, id, point);
+    }
+
+    /// Fills all slots, so many at a time on each thread, with ids and points that begin at a slot.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn par_fill<I: Iterator<Item = (u32, [f32; 3])>>(
+        &mut self,
+        slots: usize,
+        points: impl Fn(usize) -> I + Sync,
+    ) {
+        use rayon::prelude::*;
+        let len = self.len;
+        let blocks = slots.div_ceil(WIDTH);
+        self.blocks.par_chunks_mut(blocks).enumerate().for_each(|(chunk, blocks_of_chunk)| {
+            let first = chunk * blocks * WIDTH;
+            let count = (len - first).min(blocks * WIDTH);
+            for (slot, (id, point)) in points(first).take(count).enumerate() {
+                blocks_of_chunk[slot / WIDTH].set(slot % WIDTH, id, point);
+            }
+        });
     }
 
     /// Bytes on the heap.
@@ -149,19 +188,64 @@ impl Batch {
         ControlFlow::Continue(())
     }
 
-    /// Without branches, and in a form that compilers turn into vector instructions, four lanes wide even if all they know is SSE2.
     #[inline(always)]
     fn test(&mut self, len: usize, blocks: &[Block], ball: &Ball) {
         let results = self.inside.iter_mut().zip(&mut self.distances);
         for (&block, (inside, distances)) in self.blocks[..len].iter().zip(results) {
-            let block = &blocks[block as usize];
-            for lane in 0..WIDTH {
-                distances[lane] = distance_squared([block.x[lane], block.y[lane], block.z[lane]], ball.center);
-            }
-            for (inside, distance_squared) in inside.iter_mut().zip(&*distances) {
-                *inside = if *distance_squared <= ball.radius_squared { u32::MAX } else { 0 };
+            blocks[block as usize].test(ball, inside, distances);
+        }
+    }
+}
+
+/// Points around a few queries, copied together so that each of these tests them in one go.
+#[derive(Default)]
+pub(crate) struct Candidates {
+    /// Slots take the place of ids.
+    blocks: Vec<Block>,
+    inside: Vec<[u32; WIDTH]>,
+    distances: Vec<[f32; WIDTH]>,
+    found_slots: Vec<u32>,
+    found_distances: Vec<f32>,
+}
+
+impl Candidates {
+    /// Copies points.
+    pub(crate) fn gather(&mut self, lanes: &Lanes, ranges: impl Iterator<Item = Range<usize>> + Clone) {
+        let len: usize = ranges.clone().map(|slots| slots.len()).sum();
+        self.blocks.clear();
+        self.blocks.resize(len.div_ceil(WIDTH), Block::EMPTY);
+        for (place, slot) in ranges.flatten().enumerate() {
+            self.blocks[place / WIDTH].set(place % WIDTH, slot as u32, lanes.position(slot));
+        }
+        self.inside.resize(self.blocks.len(), [0; WIDTH]);
+        self.distances.resize(self.blocks.len(), [0.0; WIDTH]);
+        self.found_slots.resize(self.blocks.len() * WIDTH, 0);
+        self.found_distances.resize(self.blocks.len() * WIDTH, 0.0);
+    }
+
+    /// Slots and squared distances of the candidates in the ball.
+    #[inline(always)]
+    pub(crate) fn find(&mut self, ball: &Ball) -> (&[u32], &[f32]) {
+        for (block, (inside, distances)) in self.blocks.iter().zip(self.inside.iter_mut().zip(&mut self.distances)) {
+            block.test(ball, inside, distances);
+        }
+        let batches = self.blocks.chunks(WIDTH).zip(self.inside.chunks(WIDTH)).zip(self.distances.chunks(WIDTH));
+        let mut count = 0;
+        for ((blocks, inside), distances) in batches {
+            // Empty places are never inside.
+            let mut found = (0_u32..)
+                .zip(inside)
+                .fold(0, |found, (block, inside)| found | (u64::from(bits(inside)) << (8 * block)));
+            while found != 0 {
+                let lane = found.trailing_zeros() as usize;
+                let (block, lane) = (lane / WIDTH, lane % WIDTH);
+                self.found_slots[count] = blocks[block].ids[lane];
+                self.found_distances[count] = distances[block][lane];
+                count += 1;
+                found &= found - 1;
             }
         }
+        (&self.found_slots[..count], &self.found_distances[..count])
     }
 }
 

@@ -14,6 +14,6 @@ mod neighbor;
 pub use ball::distance_squared;
 pub use brute_force::BruteForce;
 pub use error::BuildError;
-pub use grid::HashGrid;
+pub use grid::{HashGrid, Neighborhood, SelfQuery};
 pub use index::RangeIndex;
 pub use neighbor::Neighbor;

@@ -58,5 +58,11 @@ proptest! {
         prop_assert_eq!(&found, nearest);
         grid.k_nearest(center, k, radius, &mut found);
         prop_assert_eq!(&found, nearest);
+        grid.self_query(radius).for_each(|neighborhood| {
+            assert_eq!(neighborhood.position().map(f32::to_bits), points[neighborhood.id()].map(f32::to_bits));
+            let mut one_by_one = Vec::new();
+            grid.for_each_within(points[neighborhood.id()], radius, |id, d| one_by_one.push((id, d)));
+            assert_eq!(neighborhood.iter().collect::<Vec<_>>(), one_by_one);
+        });
     }
 }

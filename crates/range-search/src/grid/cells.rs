@@ -45,16 +45,6 @@ pub(crate) struct CellBounds {
 }
 
 impl CellBounds {
-    pub(crate) const EMPTY: Self = Self { min: [i32::MAX; 3], max: [i32::MIN; 3] };
-
-    #[inline(always)]
-    pub(crate) fn add(&mut self, cell: Cell) {
-        for (axis, x) in cell.into_iter().enumerate() {
-            self.min[axis] = self.min[axis].min(x);
-            self.max[axis] = self.max[axis].max(x);
-        }
-    }
-
     /// What is common; nothing if there is nothing.
     #[inline(always)]
     pub(crate) fn intersect(&self, other: &Self) -> Option<Self> {

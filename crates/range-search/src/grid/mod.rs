@@ -3,10 +3,12 @@
 mod build;
 mod cells;
 mod query;
+mod self_query;
 
 use crate::error::BuildError;
 use crate::lanes::Lanes;
 use cells::{CellBounds, Layout, Scale};
+pub use self_query::{Neighborhood, SelfQuery};
 
 /// A grid of cubic cells over all of space; the points of a cell lie together, in the order of their ids.
 ///
@@ -59,6 +61,19 @@ impl HashGrid {
     /// If the cell size is not positive and finite, or there are more points than ids.
     pub fn build<P>(points: &[P], position: impl Fn(&P) -> [f32; 3], cell_size: f32) -> Result<Self, BuildError> {
         build::build(points, position, cell_size)
+    }
+
+    /// The same grid, built on all threads of rayon's pool.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    #[cfg(feature = "rayon")]
+    pub fn par_build<P: Sync>(
+        points: &[P],
+        position: impl Fn(&P) -> [f32; 3] + Sync,
+        cell_size: f32,
+    ) -> Result<Self, BuildError> {
+        build::par_build(points, position, cell_size)
     }
 
     /// Edge length of the cells.

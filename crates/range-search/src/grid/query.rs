@@ -1,6 +1,7 @@
 //! Which slots a query has to look at.
 
-use core::ops::ControlFlow;
+use core::convert::Infallible;
+use core::ops::{ControlFlow, Range};
 
 use super::HashGrid;
 use super::cells::{CellBounds, Layout};
@@ -13,7 +14,7 @@ use crate::neighbor::Neighbor;
 const FEW_RANGES: usize = 32;
 
 /// Ranges of slots.
-struct Ranges {
+pub(super) struct Ranges {
     few: [(u32, u32); FEW_RANGES],
     many: Vec<(u32, u32)>,
     len: usize,
@@ -40,6 +41,19 @@ impl Ranges {
         self.len = len + usize::from(start < end);
     }
 
+    /// The ranges.
+    #[inline(always)]
+    pub(super) fn iter(&self) -> impl Iterator<Item = Range<usize>> + Clone + '_ {
+        let all = if self.many.is_empty() { &self.few[..] } else { &self.many };
+        all[..self.len].iter().map(|&(start, end)| start as usize..end as usize)
+    }
+
+    /// Number of slots, once ranges are disjoint.
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        self.iter().map(|slots| slots.len()).sum()
+    }
+
     /// Sorts ranges and makes them disjoint.
     fn unite(&mut self) {
         let len = self.len;
@@ -57,7 +71,7 @@ impl Ranges {
 impl HashGrid {
     /// Disjoint ranges of slots, in ascending order, that hold all points of the cells in a box.
     #[inline(always)]
-    fn ranges(&self, (lower, upper): ([f32; 3], [f32; 3])) -> Ranges {
+    pub(super) fn ranges(&self, (lower, upper): ([f32; 3], [f32; 3])) -> Ranges {
         let query = CellBounds { min: self.scale.cell(lower), max: self.scale.cell(upper) };
         let Some(query) = self.bounds.intersect(&query) else { return Ranges::new(0) };
         if query == self.bounds || query.rows() > self.points.len() as u64 {
@@ -110,12 +124,10 @@ impl HashGrid {
         ranges
     }
 
-    /// Calls `f` with id and squared distance of the points in the ball.
+    /// Disjoint ranges of slots, in ascending order, that hold all points in the ball.
     #[inline(always)]
-    fn scan<B>(&self, ball: &Ball, f: impl FnMut(usize, f32) -> ControlFlow<B>) -> ControlFlow<B> {
-        let mut ranges = if ball.is_everything() { self.everything() } else { self.ranges(ball.bounds()) };
-        let len = ranges.len;
-        self.points.scan(ball, ranges.all()[..len].iter().map(|&(start, end)| start as usize..end as usize), f)
+    pub(super) fn ranges_of(&self, ball: &Ball) -> Ranges {
+        if ball.is_everything() { self.everything() } else { self.ranges(ball.bounds()) }
     }
 }
 
@@ -136,7 +148,7 @@ impl RangeIndex for HashGrid {
         f: impl FnMut(usize, f32) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         match Ball::new(center, radius) {
-            Some(ball) => self.scan(&ball, f),
+            Some(ball) => self.points.scan(&ball, self.ranges_of(&ball).iter(), f),
             None => ControlFlow::Continue(()),
         }
     }
@@ -144,32 +156,50 @@ impl RangeIndex for HashGrid {
     /// Looks within growing radii, until there are enough points or no larger radius.
     fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
         out.clear();
-        if k == 0 || self.points.len() == 0 || Ball::new(center, max_radius).is_none() {
+        let Some(largest) = Ball::new(center, max_radius) else { return };
+        if k == 0 || self.is_empty() {
             return;
         }
-        let mut radius = self.first_radius(center, k).min(max_radius);
+        let mut radius = self.first_radius(&largest, k);
         loop {
-            let mut closest = Closest::new(k, radius * radius, out);
-            self.for_each_within(center, radius, |id, distance_squared| {
+            let smaller = Ball::new(center, radius).filter(|ball| ball.radius_squared < largest.radius_squared);
+            let mut ball = smaller.unwrap_or(largest);
+            let ranges = self.ranges_of(&ball);
+            // If it comes to testing all points anyway, it is for the last time.
+            if ranges.count() == self.len() {
+                ball = largest;
+            }
+            let mut closest = Closest::new(k, ball.radius_squared, out);
+            let ControlFlow::Continue(()) = self.points.scan(&ball, ranges.iter(), |id, distance_squared| {
                 closest.push(Neighbor::new(id as u32, distance_squared));
+                ControlFlow::<Infallible>::Continue(())
             });
             // Points that were not found are farther away than those that were.
-            if closest.len() >= k.min(self.points.len()) || radius >= max_radius {
+            if closest.len() >= k || ball.radius_squared == largest.radius_squared {
                 return closest.finish();
             }
-            radius = grown(radius, closest.len(), k).min(max_radius);
+            radius *= growth(closest.len(), k);
         }
     }
 }
 
 impl HashGrid {
-    /// A radius that may hold `k` points.
-    fn first_radius(&self, _center: [f32; 3], _k: usize) -> f32 {
-        self.scale.size
+    /// A radius that holds somewhat more than `k` points, if they lie on a surface and about as densely as in the cells around the centre.
+    ///
+    /// The box of three cells meets about `12 c^2` of a surface, for cells of size `c` and any inclination; a ball `pi r^2`.
+    #[inline(always)]
+    fn first_radius(&self, largest: &Ball, k: usize) -> f32 {
+        let size = self.scale.size;
+        let around = self.ranges((largest.center.map(|x| x - size), largest.center.map(|x| x + size))).count();
+        let wanted = k as f32 + 2.0 * (k as f32).sqrt();
+        let radius = size * (wanted * 12.0 / (core::f32::consts::PI * around as f32)).sqrt();
+        // No points at all give infinity.
+        radius.min(2.0 * size)
     }
 }
 
-/// The next radius to try.
-fn grown(radius: f32, _found: usize, _k: usize) -> f32 {
-    2.0 * radius
+/// How much larger the next radius is, again as for a surface.
+#[inline(always)]
+fn growth(found: usize, k: usize) -> f32 {
+    (1.2 * (k as f32 / found as f32).sqrt()).min(2.0)
 }
