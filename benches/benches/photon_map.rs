@@ -144,11 +144,11 @@ fn lights(criterion: &mut Criterion) {
         let map = PrimaryPhotonMap::build(primary, 0.0113).expect("a radius");
         let gather = Gather::within(0.0113).expect("a radius");
         let (points, mut contributing, mut rays) =
-            (points(), ContributingLights::new(selection.table()), ShadowRays::default());
+            (points(), ContributingLights::new(count as usize), ShadowRays::default());
         group.bench_function(format!("query among {count} lights"), |bencher| {
             bencher.iter(|| {
                 let query = |at: &GatherPoint| {
-                    map.contributing(black_box(at.position()), &gather, selection.table(), &mut contributing);
+                    map.contributing(black_box(at.position()), &gather, &mut contributing);
                     contributing.len()
                 };
                 points.iter().map(query).sum::<usize>()

@@ -14,9 +14,8 @@ const LEAST: f64 = f64::EPSILON / 2.0;
 /// **Symbols.** `p_k = p(x_k, wi_k)`: the probability, `u_k`: a random number of its own. Storing is a Russian roulette:
 /// what is kept is worth `1 / p`.
 ///
-/// **Unbiased** if `p > 0` wherever a stored photon matters, whatever `p` is otherwise. Consequently anything may be used
-/// for `p`, the estimate of an importance with all its errors included, as long as it does not look at the flux
-/// of the same photon's later use.
+/// **Unbiased** if `p > 0` wherever a stored photon matters, whatever `p` is otherwise: anything may be used for it, the estimate
+/// of an importance with all its errors included, as long as `u_k` does not depend on it.
 ///
 /// **Laws.** A probability lies in `[0, 1]`: above counts as 1, negative and below `2^-53` as 0. NaN counts as 1: a
 /// photon that nothing is known about is kept as it is. The same place and direction give the same answer.

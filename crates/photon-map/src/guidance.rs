@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::sphere::below_one;
 use crate::{sphere_direction, sphere_square};
 
 /// Why there is no such guidance.
@@ -112,7 +113,7 @@ impl DirectionalHistogram {
         let mut rest = u * self.total;
         let mut chosen = None;
         for (cell, &weight) in self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-            chosen = Some((cell, (rest / weight).clamp(0.0, 1.0 - f64::EPSILON)));
+            chosen = Some((cell, below_one(rest / weight)));
             if rest < weight {
                 break;
             }
@@ -122,7 +123,7 @@ impl DirectionalHistogram {
         let (column, row) = (cell as u32 % self.columns, cell as u32 / self.columns);
         Some(sphere_direction([
             (f64::from(column) + within) / f64::from(self.columns),
-            (f64::from(row) + v.clamp(0.0, 1.0)) / f64::from(self.rows),
+            (f64::from(row) + below_one(v)) / f64::from(self.rows),
         ]))
     }
 }

@@ -26,8 +26,8 @@ use std::f64::consts::PI;
 /// `mu_2` is the second moment along one axis for `r = 1`. At its best radius Epanechnikov has the least mean squared error
 /// of all kernels that are not negative.
 ///
-/// **Source.** H. W. Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001, sections 7.2.2 and 7.2.3; B. W.
-/// Silverman, *Density Estimation for Statistics and Data Analysis*, 1986, section 4.2.
+/// **Source.** H. W. Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001; B. W.
+/// Silverman, *Density Estimation for Statistics and Data Analysis*, 1986.
 ///
 /// # Example
 /// ```
@@ -100,7 +100,8 @@ impl Kernel {
         }
     }
 
-    /// The integral of `K^2` over the unit disk: the variance of an estimate is this over `r^2`, times `sum flux^2` per area.
+    /// The integral of `K^2` over the unit disk: the variance of an estimate is this over
+    /// `r^2`, times the sum of `(flux / N)^2` per area.
     #[must_use]
     pub fn roughness(&self) -> f64 {
         match self {

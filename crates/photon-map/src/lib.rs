@@ -27,8 +27,8 @@ pub use guidance::{DirectionalHistogram, GuidanceError, Guide, GuidedDirection};
 pub use importance::{AnyDirection, DirectionWeight, ImportanceMap, ImportanceScale, ImportonDeposition, ScaleError};
 pub use kernel::{Cone, Kernel, KernelError};
 pub use lights::{
-    Allocation, ContributingLights, LightSelection, LightTable, LightTableError, PrimaryPhotonMap, PrimaryPhotons,
-    SelectionError, ShadowRay, ShadowRays,
+    Allocation, ContributingLights, LightSelection, LightTable, LightTableError, OtherLights, PrimaryPhotonMap,
+    PrimaryPhotons, SelectionError, ShadowRay, ShadowRays,
 };
 pub use partition::{MapPartition, PartitionError, PhotonMaps};
 pub use photon::{Importon, PackedPhoton, Photon};

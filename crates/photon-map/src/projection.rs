@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::sphere::below_one;
 use crate::vector::normalise;
 
 /// A cell of a grid on the unit square.
@@ -149,14 +150,19 @@ impl ProjectionMap {
     /// A point in the marked cells, uniformly; `None` if no cell is marked.
     ///
     /// The first number chooses the cell and the place in it, so low-discrepancy points stay stratified along one axis.
+    /// Numbers outside of `[0, 1)` count as the nearest in it, NaN as zero.
     #[must_use]
     pub fn sample(&self, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
         let scaled = u * self.marked.len() as f64;
         let chosen = (scaled as usize).min(self.marked.len().checked_sub(1)?);
         let index = self.marked[chosen];
-        let cell =
-            Cell { column: index % self.columns, row: index / self.columns, columns: self.columns, rows: self.rows };
-        Some(cell.at([(scaled - chosen as f64).clamp(0.0, 1.0 - f64::EPSILON), v]))
+        // Adding the place in the cell may round up to the next cell, which need not be marked.
+        let place = |cell: u32, within: f64, cells: u32| {
+            let place = (f64::from(cell) + below_one(within)) / f64::from(cells);
+            if place * f64::from(cells) < f64::from(cell) + 1.0 { place } else { place * (1.0 - f64::EPSILON) }
+        };
+        let column = place(index % self.columns, scaled - chosen as f64, self.columns);
+        Some([column, place(index / self.columns, v, self.rows)])
     }
 
     /// Whether a point of the unit square lies in a marked cell; no, if it lies outside of the square.
@@ -226,6 +232,7 @@ mod tests {
         let all = ProjectionMap::new(2, 2, |_| true).unwrap();
         assert!(!all.contains([f64::NAN, 0.5]) && !all.contains([1.0, 0.5]) && all.contains([0.99, 0.0]));
         assert_eq!(all.share(), 1.0);
-        assert!(all.sample([f64::NAN, 0.5]).is_some());
+        assert_eq!(all.sample([f64::NAN, -1.0]), Some([0.0, 0.0]));
+        assert!(all.sample([2.0, 2.0]).is_some_and(|u| all.contains(u)));
     }
 }

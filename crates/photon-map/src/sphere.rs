@@ -25,7 +25,6 @@ pub fn direction([u, v]: [f64; 2]) -> [f32; 3] {
 /// `None` for zero, infinite and NaN vectors.
 #[must_use]
 pub fn square(direction: [f32; 3]) -> Option<[f64; 2]> {
-    const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
     let [x, y, z] = direction.map(f64::from);
     let length = (x * x + y * y + z * z).sqrt();
     if !(length > 0.0 && length.is_finite()) {
@@ -33,7 +32,13 @@ pub fn square(direction: [f32; 3]) -> Option<[f64; 2]> {
     }
     let turn = y.atan2(x) / TAU;
     let u = if turn < 0.0 { turn + 1.0 } else { turn };
-    Some([u.min(BELOW_ONE), (0.5 - 0.5 * z / length).clamp(0.0, BELOW_ONE)])
+    Some([below_one(u), below_one(0.5 - 0.5 * z / length)])
+}
+
+/// The nearest number of `[0, 1)`; zero for NaN.
+#[inline]
+pub(crate) fn below_one(u: f64) -> f64 {
+    if u > 0.0 { u.min(1.0 - f64::EPSILON / 2.0) } else { 0.0 }
 }
 
 #[cfg(test)]

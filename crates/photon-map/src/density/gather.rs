@@ -21,11 +21,16 @@ const LEAST_RADIUS: f32 = 1.0 / 4096.0;
 /// E[ (k-1) / (pi r^2) ] = lambda            this crate: unbiased
 /// E[  k    / (pi r^2) ] = lambda k / (k-1)  counting the k-th as well (Jensen 2001): too bright by 1 / (k-1)
 /// ```
-/// The same holds for every kernel (given `r`, the nearer photons are uniform in the disk), for a fixed number of independent photons
-/// (`r^2` is Beta distributed), with the clamp (`E[N(R) / R^2; N(R) < k]` fills in what `r_k > R` cuts off), and if other photons are
-/// around that the tests of [`GatherPoint`](crate::GatherPoint) then leave out.
-/// Where irradiance is not uniform, the estimate is biased like one with a fixed radius, and since radius and photons depend on each other,
-/// not only by the kernel's second moment.
+/// It holds as well
+/// - for every kernel: given `r`, the nearer photons are independent in the disk;
+/// - for a fixed number of independent photons: `r^2` is Beta distributed;
+/// - with the clamp: `E[N(R) / R^2; N(R) < k]` fills in exactly what `r_k > R` cuts off;
+/// - where photons are *not* of equal density or flux, as after deposition, if only irradiance is uniform: `pi lambda r^2` is then
+///   the expected number `Lambda(r)` of photons in the ball, and `E[(k-1) / Lambda(r_k)] = 1`;
+/// - if photons of other surfaces are around, which the tests of [`GatherPoint`](crate::GatherPoint) then leave out, for the same reason.
+///
+/// Where irradiance is not uniform, the estimate is biased like one with a fixed radius, and not only by the kernel's second moment, since
+/// radius and photons depend on each other.
 ///
 /// # Example
 /// ```

@@ -38,8 +38,8 @@ pub struct Estimate<T> {
 /// **Assumptions.** The surface within the radius is a plane, all of it lit: near its rim a part of the disk has no photons, and the
 /// estimate is too small. Irradiance is uniform within the radius.
 ///
-/// **Biased** for a fixed radius by `1/2 mu_2 r^2` times the Laplacian of the irradiance ([`Kernel::second_moment`]); the variance is
-/// [`Kernel::roughness`]` / (N r^2)` times the mean of `N flux^2` per area. **Consistent** if the radius shrinks slowly:
+/// **Biased** for a fixed radius by `1/2 mu_2 r^2` times the Laplacian of the irradiance ([`Kernel::second_moment`]); the variance is at most
+/// [`Kernel::roughness`]` / r^2` times the sum of `(flux / N)^2` per area. **Consistent** if the radius shrinks slowly:
 /// [`ProgressiveRadius`](crate::ProgressiveRadius). Exact on uniform sheets.
 ///
 /// **Cost.** A query tests the photons around the point. Building sorts photons by place once, so that queries read them in a row.

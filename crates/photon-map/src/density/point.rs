@@ -18,7 +18,7 @@ use crate::vector::{dot, normalise, subtract};
 ///
 /// Both make estimates *less* biased at corners and walls, and neither biases them on a plane.
 ///
-/// **Source.** H. W. Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001, sections 7.2 and 7.3.
+/// **Source.** H. W. Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001.
 ///
 /// # Example
 /// ```

@@ -8,4 +8,4 @@ mod table;
 pub use contributing::ContributingLights;
 pub use primary::{PrimaryPhotonMap, PrimaryPhotons};
 pub use selection::{Allocation, LightSelection, SelectionError, ShadowRay, ShadowRays};
-pub use table::{LightTable, LightTableError};
+pub use table::{LightTable, LightTableError, OtherLights};

@@ -2,7 +2,7 @@
 
 use range_search::HashGrid;
 
-use super::{ContributingLights, LightTable};
+use super::ContributingLights;
 use crate::vector::is_finite;
 use crate::{Flux, Gather, MapError, Photon};
 
@@ -73,7 +73,7 @@ impl PrimaryPhotons {
 /// # Example
 /// ```
 /// use photon_map::{
-///     CausticRule, ContributingLights, Gather, LastBounce, LightTable, Photon, PrimaryPhotonMap, PrimaryPhotons,
+///     CausticRule, ContributingLights, Gather, LastBounce, Photon, PrimaryPhotonMap, PrimaryPhotons,
 /// };
 /// let mut primary = PrimaryPhotons::new();
 /// for (x, light) in [(0.0, 3), (0.1, 3), (0.2, 90), (5.0, 7)] {
@@ -81,9 +81,8 @@ impl PrimaryPhotons {
 ///     primary.offer(&CausticRule::SPECULAR.label(photon, LastBounce::Emission));
 /// }
 /// let map = PrimaryPhotonMap::build(primary, 1.0)?;
-/// let table = LightTable::uniform(100)?;
-/// let mut contributing = ContributingLights::new(&table);
-/// map.contributing([0.0; 3], &Gather::within(1.0)?, &table, &mut contributing);
+/// let mut contributing = ContributingLights::new(100);
+/// map.contributing([0.0; 3], &Gather::within(1.0)?, &mut contributing);
 /// assert_eq!(contributing.as_slice(), [(3, 2), (90, 1)]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -127,16 +126,10 @@ impl PrimaryPhotonMap {
         self.lights.capacity() * size_of::<u32>() + self.index.bytes()
     }
 
-    /// Replaces what is in `contributing` by the lights of the photons around a point. Lights that the table does not have are left out.
-    pub fn contributing(
-        &self,
-        position: [f32; 3],
-        gather: &Gather,
-        table: &LightTable,
-        contributing: &mut ContributingLights,
-    ) {
-        let mut scratch = contributing.begin(table);
+    /// Replaces what is in `contributing` by the lights of the photons around a point; lights beyond its number of lights are left out.
+    pub fn contributing(&self, position: [f32; 3], gather: &Gather, contributing: &mut ContributingLights) {
+        let mut scratch = contributing.begin();
         gather.for_each(&self.index, position, &mut scratch, |_, id, _| contributing.insert(self.lights[id]));
-        contributing.seal(table, scratch);
+        contributing.seal(scratch);
     }
 }

@@ -1,5 +1,6 @@
 //! Which lights get shadow rays.
 
+use super::table::Excluded;
 use super::{ContributingLights, LightTable};
 
 /// How the shadow rays for contributing lights are shared out by importance.
@@ -75,7 +76,7 @@ pub enum SelectionError {
 /// use photon_map::{Allocation, ContributingLights, LightSelection, LightTable, ShadowRays};
 /// let areas = [1.0, 1.0, 2.0, 4.0];
 /// let selection = LightSelection::new(LightTable::new(&areas)?, 4, 1, Allocation::BrightestFirst)?;
-/// let contributing = ContributingLights::from_lights(selection.table(), [0, 2]);
+/// let contributing = ContributingLights::from_lights(areas.len(), [0, 2]);
 /// let mut rays = ShadowRays::default();
 /// selection.select_by_weight(&contributing, [0.1, 0.7], &mut rays);
 /// assert_eq!(rays.as_slice().iter().map(|ray| ray.light).collect::<Vec<_>>(), [2, 2, 0, 0, 3]);
@@ -95,6 +96,7 @@ pub struct ShadowRays {
     rays: Vec<ShadowRay>,
     /// Contributing lights with their importance.
     importance: Vec<(u32, f64)>,
+    excluded: Excluded,
 }
 
 impl ShadowRays {
@@ -151,7 +153,7 @@ impl LightSelection {
         u: [f64; 2],
         rays: &mut ShadowRays,
     ) {
-        let ShadowRays { rays, importance: lights } = rays;
+        let ShadowRays { rays, importance: lights, excluded } = rays;
         rays.clear();
         lights.clear();
         lights.extend(contributing.as_slice().iter().map(|&(light, photons)| (light, importance(light, photons))));
@@ -160,12 +162,11 @@ impl LightSelection {
             expect(lights, self.contributing_rays, self.allocation);
             round(lights, u[0], rays);
         }
+        excluded.set(&self.table, contributing);
         let others = f64::from(self.other_rays);
         for ray in 0..self.other_rays {
-            let Some((light, probability)) = self.table.sample_other(contributing, (f64::from(ray) + u[1]) / others)
-            else {
-                break;
-            };
+            let u = (f64::from(ray) + u[1]) / others;
+            let Some((light, probability)) = self.table.sample_outside(excluded, u) else { break };
             let weight = 1.0 / (others * probability);
             rays.push(ShadowRay { light, weight, stratum: 0, strata: 1, contributing: false });
         }

@@ -28,8 +28,8 @@ const UNITS: f64 = (1u64 << 32) as f64;
 /// use photon_map::{ContributingLights, LightTable};
 /// let table = LightTable::new(&[1.0, 2.0, 4.0, 1.0])?;
 /// assert_eq!(table.sample(0.5), (2, 0.5));
-/// let contributing = ContributingLights::from_lights(&table, [2]);
-/// assert_eq!(table.sample_other(&contributing, 0.3), Some((1, 0.5)));
+/// let contributing = ContributingLights::from_lights(4, [2]);
+/// assert_eq!(table.others(&contributing).sample(0.3), Some((1, 0.5)));
 /// # Ok::<(), photon_map::LightTableError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,15 +174,24 @@ impl LightTable {
         (light, self.probability(light))
     }
 
-    /// A light that is not among the contributing ones, with its probability; `None` if all contribute.
-    ///
-    /// `u` as in [`sample`](Self::sample).
+    /// The lights that are not among the contributing ones.
     #[must_use]
-    pub fn sample_other(&self, contributing: &ContributingLights, u: f64) -> Option<(u32, f64)> {
-        let rest = self.total().checked_sub(contributing.weight()).filter(|&rest| rest > 0)?;
+    pub fn others(&self, contributing: &ContributingLights) -> OtherLights<'_> {
+        let mut excluded = Excluded::default();
+        excluded.set(self, contributing);
+        OtherLights { table: self, excluded }
+    }
+
+    /// A light that is not excluded, with its probability; `None` if all are.
+    pub(super) fn sample_outside(&self, excluded: &Excluded, u: f64) -> Option<(u32, f64)> {
+        let rest = self.total() - excluded.sum;
+        if rest == 0 {
+            return None;
+        }
         let at = whole(u, rest);
         // Skip the excluded lights before the place: those of which the others before them do not reach beyond it.
-        let before = contributing.skipped(|light, excluded| self.prefix[light as usize] - excluded <= at);
+        let skipped = excluded.lights.partition_point(|&(light, before)| self.prefix[light as usize] - before <= at);
+        let before = excluded.lights.get(skipped).map_or(excluded.sum, |&(_, before)| before);
         let light = self.light_at(at + before);
         Some((light, self.weight(light) as f64 / rest as f64))
     }
@@ -198,6 +207,43 @@ fn whole(u: f64, total: u64) -> u64 {
     ((u * total as f64) as u64).min(total - 1)
 }
 
+/// The lights of a table that do not contribute, see [`LightTable::others`].
+#[derive(Clone, Debug)]
+pub struct OtherLights<'a> {
+    table: &'a LightTable,
+    excluded: Excluded,
+}
+
+impl OtherLights<'_> {
+    /// One of them, with its probability; `None` if all lights contribute.
+    ///
+    /// `u` as in [`LightTable::sample`].
+    #[must_use]
+    pub fn sample(&self, u: f64) -> Option<(u32, f64)> {
+        self.table.sample_outside(&self.excluded, u)
+    }
+}
+
+/// Lights to be left out, in ascending order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Excluded {
+    /// Each with the weight of those before it.
+    lights: Vec<(u32, u64)>,
+    sum: u64,
+}
+
+impl Excluded {
+    /// Leaves out the contributing lights; those that the table does not have cannot be drawn anyway.
+    pub(super) fn set(&mut self, table: &LightTable, contributing: &ContributingLights) {
+        self.lights.clear();
+        self.sum = 0;
+        for &(light, _) in contributing.as_slice().iter().take_while(|(light, _)| (*light as usize) < table.len()) {
+            self.lights.push((light, self.sum));
+            self.sum += table.weight(light);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,7 +254,7 @@ mod tests {
         let mut counts = vec![0; table.len()];
         for i in 0..places {
             let u = (f64::from(i) + 0.5) / f64::from(places);
-            if let Some((light, probability)) = table.sample_other(contributing, u) {
+            if let Some((light, probability)) = table.others(contributing).sample(u) {
                 counts[light as usize] += 1;
                 let rest: u64 =
                     (0..table.len() as u32).filter(|&l| !contributing.contains(l)).map(|l| table.weight(l)).sum();
@@ -227,7 +273,7 @@ mod tests {
             let weights: Vec<f64> = exponents.iter().map(|&e| f64::from(1 << e)).collect();
             let table = LightTable::new(&weights).unwrap();
             let excluded = (0..weights.len() as u32).filter(|&light| excluded[light as usize]);
-            let contributing = ContributingLights::from_lights(&table, excluded);
+            let contributing = ContributingLights::from_lights(table.len(), excluded);
             let others = |light: u32| !contributing.contains(light);
             let rest: f64 = (0..).zip(&weights).filter(|(light, _)| others(*light)).map(|(_, weight)| weight).sum();
             let found = counts(&table, &contributing, (rest as u32).max(1) * 4);
@@ -243,12 +289,21 @@ mod tests {
         weights[501] = 3.0;
         let table = LightTable::new(&weights).unwrap();
         let lights = (0..1000).filter(|&light| light != 500 && light != 501);
-        let contributing = ContributingLights::from_lights(&table, lights);
-        let (_, least) = table.sample_other(&contributing, 0.0).unwrap();
-        let (light, most) = table.sample_other(&contributing, 0.5).unwrap();
+        let contributing = ContributingLights::from_lights(table.len(), lights);
+        let (_, least) = table.others(&contributing).sample(0.0).unwrap();
+        let (light, most) = table.others(&contributing).sample(0.5).unwrap();
         assert!(least > 0.0 && light == 501 && (least + most - 1.0).abs() < 1e-15);
-        let all = ContributingLights::from_lights(&table, 0..1000);
-        assert_eq!(table.sample_other(&all, 0.3), None);
+        let all = ContributingLights::from_lights(table.len(), 0..1000);
+        assert_eq!(table.others(&all).sample(0.3), None);
+    }
+
+    #[test]
+    fn sets_of_other_scenes_exclude_what_the_table_has() {
+        let table = LightTable::uniform(3).unwrap();
+        let larger = ContributingLights::from_lights(10, [1, 3, 9]);
+        assert_eq!(table.others(&larger).sample(0.9), Some((2, 0.5)));
+        let smaller = ContributingLights::from_lights(1, [0]);
+        assert_eq!(table.others(&smaller).sample(0.0), Some((1, 0.5)));
     }
 
     #[test]

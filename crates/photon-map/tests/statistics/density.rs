@@ -47,6 +47,38 @@ fn nearest_photons_are_unbiased_on_a_uniform_sheet() {
     }
 }
 
+/// What must be uniform is irradiance, not the density of photons: those that deposition left are dense on one side, with less flux.
+#[test]
+fn nearest_photons_of_unequal_density_are_unbiased_for_uniform_irradiance() {
+    let check = SUITE.check("nearest photons of unequal density");
+    let mut uniforms = check.uniforms();
+    let estimation = DensityEstimation { gather: Gather::nearest(12, 0.2).unwrap(), kernel: Kernel::Epanechnikov };
+    let (mut estimates, mut equal) = (Moments::new(), Moments::new());
+    for _ in 0..20_000 {
+        let (mut photons, mut forgotten) = (Photons::new(), Photons::new());
+        for _ in 0..2000 {
+            let [x, y, u] = uniforms.array();
+            let p = if x < 0.5 { 0.5 } else { 0.03 };
+            let photon = Photon::new([x as f32, y as f32, 0.0], UP, 1.0_f64);
+            if u < p {
+                photons.store(photon.scaled(1.0 / p));
+                forgotten.store(photon);
+            }
+        }
+        let irradiance = |mut photons: Photons<f64>, moments: &mut Moments| {
+            photons.add_paths(2000);
+            let map = PhotonMap::build(photons, 0.1).unwrap();
+            // Near the step.
+            let at = GatherPoint::on([0.51, 0.5, 0.0], UP);
+            moments.push(map.irradiance(&estimation, &at, &mut Scratch::default()).value);
+        };
+        irradiance(photons, &mut estimates);
+        irradiance(forgotten, &mut equal);
+    }
+    mean_is(check, &estimates, 1.0).expect_pass();
+    mean_is(SUITE.twin("nearest, 1/p forgotten"), &equal, 1.0).expect_reject();
+}
+
 /// Photons of the other side take part in finding the radius, and are then left out.
 #[test]
 fn photons_of_the_other_side_do_not_disturb_nearest_photons() {

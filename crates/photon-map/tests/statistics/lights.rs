@@ -31,7 +31,7 @@ fn ray(uniforms: &mut Uniforms, light: u32) -> f64 {
 fn estimates(mut uniforms: Uniforms, selection: &LightSelection, by_contribution: bool) -> Moments {
     // What is found: most of what contributes, and some that does not.
     let found = (0..LIGHTS).filter(|&light| light % 7 == 3 && light != 10 || light % 31 == 0);
-    let contributing = ContributingLights::from_lights(selection.table(), found);
+    let contributing = ContributingLights::from_lights(LIGHTS as usize, found);
     let mut rays = ShadowRays::default();
     let mut moments = Moments::new();
     for _ in 0..60_000 {
@@ -101,11 +101,12 @@ fn others_are_drawn_with_the_probabilities_that_are_reported() {
     let check = SUITE.check("others by the table");
     let mut uniforms = check.uniforms();
     let table = LightTable::new(&areas()).unwrap();
-    let contributing = ContributingLights::from_lights(&table, (0..LIGHTS).filter(|light| light % 3 == 0));
+    let contributing = ContributingLights::from_lights(LIGHTS as usize, (0..LIGHTS).filter(|light| light % 3 == 0));
+    let others = table.others(&contributing);
     let mut counts = vec![0_u64; LIGHTS as usize];
     let mut probabilities = vec![0.0; LIGHTS as usize];
     for _ in 0..400_000 {
-        let (light, probability) = table.sample_other(&contributing, uniforms.next_f64()).unwrap();
+        let (light, probability) = others.sample(uniforms.next_f64()).unwrap();
         counts[light as usize] += 1;
         probabilities[light as usize] = probability;
     }
@@ -134,7 +135,7 @@ fn selection_from_primary_photons_is_unbiased_from_end_to_end() {
             .unwrap()
     };
     let (unbiased, biased) = (selection(2), selection(0));
-    let mut contributing = ContributingLights::new(unbiased.table());
+    let mut contributing = ContributingLights::new(ROOMS as usize);
     let (mut rays, mut moments) = (ShadowRays::default(), [Moments::new(), Moments::new()]);
     let mut missed = 0;
     for _ in 0..6000 {
@@ -155,7 +156,7 @@ fn selection_from_primary_photons_is_unbiased_from_end_to_end() {
             }
         }
         let map = PrimaryPhotonMap::build(primary, 0.4).unwrap();
-        map.contributing([X, 0.0, 0.0], &Gather::within(0.4).unwrap(), unbiased.table(), &mut contributing);
+        map.contributing([X, 0.0, 0.0], &Gather::within(0.4).unwrap(), &mut contributing);
         missed += u32::from(!contributing.contains(41));
         let u = uniforms.array();
         for (moments, selection) in moments.iter_mut().zip([&unbiased, &biased]) {

@@ -9,4 +9,4 @@ mod emission;
 mod lights;
 mod partition;
 
-static SUITE: Suite = Suite::with_share("photon-map", 33, 5e-8);
+static SUITE: Suite = Suite::with_share("photon-map", 34, 5e-8);
