@@ -1,5 +1,5 @@
-//! Photon maps: storing, building, density estimates from about 50 photons, the decision to keep a photon, and the choice of
-//! shadow rays among 100 and 10,000 lights, whose cost must not differ.
+//! Photon maps: storing, building, density estimates from about 50 photons, the decision to keep a photon, and the
+//! choice of shadow rays among 100 and 10,000 lights, whose cost must not differ.
 
 use std::hint::black_box;
 use std::time::Duration;

@@ -1,9 +1,11 @@
-//! A photon map of a floor under a lamp, against the closed form: `photon-map` with the photons it keeps where the camera looks.
+//! A photon map of a floor under a lamp, against the closed form: `photon-map` with the photons it keeps where the
+//! camera looks.
 //!
 //! ```text
 //! E(x) = I h / d^3        lamp of intensity I at height h, distance d from x
 //! ```
-//! The camera sees a corner of the floor. With the same number of photons in memory, deposition by importance has them there.
+//! The camera sees a corner of the floor. With the same number of photons in memory, deposition by importance has
+//! them there.
 //!
 //! Run with `cargo run --release --example photon_map`.
 #![allow(clippy::print_stdout)]

@@ -54,7 +54,8 @@ impl CausticRule {
     /// Only Dirac deltas make caustics.
     pub const SPECULAR: Self = Self { roughness: -1.0 };
 
-    /// Glossy bounces up to this roughness make caustics, and Dirac deltas; infinity means everything that is not diffuse.
+    /// Glossy bounces up to this roughness make caustics, and Dirac deltas; infinity means everything that is not
+    /// diffuse.
     ///
     /// # Errors
     /// [`CausticRuleError::Roughness`] if it is negative or NaN.

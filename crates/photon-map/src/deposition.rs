@@ -11,11 +11,11 @@ const LEAST: f64 = f64::EPSILON / 2.0;
 /// sum_k delta_k flux_k  =  E sum_k delta_k flux_k / p_k  [u_k < p_k]          u_k uniform in [0, 1)
 /// ```
 ///
-/// **Symbols.** `p_k = p(x_k, wi_k)`: the probability, `u_k`: a random number of its own. Storing is a Russian roulette:
-/// what is kept is worth `1 / p`.
+/// **Symbols.** `p_k = p(x_k, wi_k)`: the probability, `u_k`: a random number of its own. Storing is a Russian
+/// roulette: what is kept is worth `1 / p`.
 ///
-/// **Unbiased** if `p > 0` wherever a stored photon matters, whatever `p` is otherwise: anything may be used for it, the estimate
-/// of an importance with all its errors included, as long as `u_k` does not depend on it.
+/// **Unbiased** if `p > 0` wherever a stored photon matters, whatever `p` is otherwise: anything may be used for it,
+/// the estimate of an importance with all its errors included, as long as `u_k` does not depend on it.
 ///
 /// **Laws.** A probability lies in `[0, 1]`: above counts as 1, negative and below `2^-53` as 0. NaN counts as 1: a
 /// photon that nothing is known about is kept as it is. The same place and direction give the same answer.
@@ -58,9 +58,9 @@ impl Deposition for KeepAll {
 pub trait DepositionExt: Deposition {
     /// Keeps the photon with its probability, its flux divided by it; `None` to discard it.
     ///
-    /// `u` is uniform in `[0, 1)` and used for nothing else. A number of `b` bits rounds the probability up to a multiple
-    /// of `2^-b`: with the 24 bits of an `f32` that is a relative bias below `2^-24 / p`, so do not let such numbers decide
-    /// on probabilities below, say, 1e-4. NaN discards.
+    /// `u` is uniform in `[0, 1)` and used for nothing else. A number of `b` bits rounds the probability up to a
+    /// multiple of `2^-b`: with the 24 bits of an `f32` that is a relative bias below `2^-24 / p`, so do not let such
+    /// numbers decide on probabilities below, say, 1e-4. NaN discards.
     #[inline]
     fn decide<F: Flux>(&self, photon: Photon<F>, u: f64) -> Option<Photon<F>> {
         let p = sanitised(self.probability(photon.position, photon.wi));

@@ -28,8 +28,8 @@ pub enum GuidanceError {
 /// h(w) = (n / 4 pi) W_cell(w) / sum W            per solid angle
 /// ```
 ///
-/// **Symbols.** `n`: number of cells; `W_c`: sum of the importance that arrived from directions in cell `c`. Cells are those of a
-/// grid on the square of [`sphere_direction`](crate::sphere_direction).
+/// **Symbols.** `n`: number of cells; `W_c`: sum of the importance that arrived from directions in cell `c`. Cells
+/// are those of a grid on the square of [`sphere_direction`](crate::sphere_direction).
 ///
 /// **Assumptions.** None: it is a density to sample from, not an estimate. Alone it may be zero where light goes; see
 /// [`Guide`]. Importance that is negative, zero, infinite or NaN, and directions that are none, are not counted.
@@ -143,8 +143,9 @@ pub struct GuidedDirection {
 /// p(w) = (1 - b) p_0(w) + b h(w),      contribution  f(w) cos / p(w)
 /// ```
 ///
-/// **Symbols.** `b` in `[0, 1)`: the share that is guided; `p_0`: the original density per solid angle (of the BSDF, or the light's
-/// emission); `h`: [`DirectionalHistogram`] of the importons around the point; 0 takes `b`'s place if the histogram is empty.
+/// **Symbols.** `b` in `[0, 1)`: the share that is guided; `p_0`: the original density per solid angle (of the BSDF,
+/// or the light's emission); `h`: [`DirectionalHistogram`] of the importons around the point; 0 takes `b`'s place if
+/// the histogram is empty.
 ///
 /// **Unbiased** for every histogram, since `p >= (1 - b) p_0 > 0` where `f cos > 0`; the weight is at most
 /// `1 / (1 - b)` times that of the original sampling. Dirac deltas have no density: scatter by them without guidance.
@@ -198,8 +199,8 @@ impl Guide {
 
     /// A direction from the mixture.
     ///
-    /// `u`: uniform in `[0, 1)`; the first one chooses. `original`: the renderer's own sampling, `None` where the path ends
-    /// (then this is `None`, too, and the contribution zero); `pdf`: its density per solid angle.
+    /// `u`: uniform in `[0, 1)`; the first one chooses. `original`: the renderer's own sampling, `None` where the
+    /// path ends (then this is `None`, too, and the contribution zero); `pdf`: its density per solid angle.
     pub fn sample(
         &self,
         histogram: &DirectionalHistogram,

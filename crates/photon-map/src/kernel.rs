@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 /// **Symbols.** `d`: distance from the centre, `r`: radius; `K(t) / r^2` has the unit 1/area and integrates to one over
 /// the disk. `k >= 1`: how flat Jensen's cone is; with `k = 1` it reaches zero at the rim.
 ///
-/// The disk is open: a photon at distance `r` does not count. So the `k`-th nearest photon, whose distance is the radius,
-/// is left out, and that is what makes estimates from the nearest photons unbiased on a uniform sheet: see
+/// The disk is open: a photon at distance `r` does not count. So the `k`-th nearest photon, whose distance is the
+/// radius, is left out, and that is what makes estimates from the nearest photons unbiased on a uniform sheet: see
 /// [`Gather::nearest`](crate::Gather::nearest).
 ///
 /// | kernel | bias `1/2 mu_2 r^2 laplacian(E)`, `mu_2 =` | variance relative to constant, same `r` |
@@ -23,8 +23,8 @@ use std::f64::consts::PI;
 /// | cone, `k = 1` | 3/20 | 3/2 |
 /// | Epanechnikov | 1/6 | 4/3 |
 ///
-/// `mu_2` is the second moment along one axis for `r = 1`. At its best radius Epanechnikov has the least mean squared error
-/// of all kernels that are not negative.
+/// `mu_2` is the second moment along one axis for `r = 1`. At its best radius Epanechnikov has the least mean squared
+/// error of all kernels that are not negative.
 ///
 /// **Source.** H. W. Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001; B. W.
 /// Silverman, *Density Estimation for Statistics and Data Analysis*, 1986.
@@ -89,8 +89,8 @@ impl Kernel {
         }
     }
 
-    /// The integral of `x^2 K` over the unit disk: the bias of an estimate is half of it, times `r^2` and the Laplacian of
-    /// the irradiance.
+    /// The integral of `x^2 K` over the unit disk: the bias of an estimate is half of it, times `r^2` and the
+    /// Laplacian of the irradiance.
     #[must_use]
     pub fn second_moment(&self) -> f64 {
         match self {

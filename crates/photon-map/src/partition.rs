@@ -9,29 +9,35 @@ use crate::{Deposition, DepositionExt, Flux, Photon, Photons};
 ///                        + sum over other k of    delta_k flux_k / (q p_k)   [stored with probability q p_k]
 /// ```
 ///
-/// **Symbols.** `q` in `(0, 1]`: the ratio; `1 / q` times as many paths are traced as the global map needs alone. `p_k`: the
-/// probability of [`Deposition`]. `N`: number of paths.
+/// **Symbols.** `q` in `(0, 1]`: the ratio; `1 / q` times as many paths are traced as the global map needs alone.
+/// `p_k`: the probability of [`Deposition`]. `N`: number of paths.
 ///
 /// | variant | a photon that is not caustic | asks for `p` | global map is divided by |
 /// |---|---|---|---|
-/// | [`one_number`](Self::one_number) | stored if `u_1 < q p`, flux over `q p` | if `u_1 < q` | `N` |
-/// | [`two_numbers`](Self::two_numbers) | stored if `u_1 < q` and `u_2 < p`, flux over `q p` | if `u_1 < q` | `N` |
-/// | [`trajectories`](Self::trajectories) | stored if its path is among the first `floor(q N)` and `u_2 < p`, flux over `p` | in those paths | `floor(q N)` |
+/// | [`one_number`] | stored if `u_1 < q p`, flux over `q p` | if `u_1 < q` | `N` |
+/// | [`two_numbers`] | stored if `u_1 < q` and `u_2 < p`, flux over `q p` | if `u_1 < q` | `N` |
+/// | [`trajectories`] | in the first `floor(q N)` paths stored if `u_2 < p`, flux over `p` | there | `floor(q N)` |
 ///
-/// All three are one piece of code: a gate that does not need `p`, then the deposition. For the first one `u_1 / q` is the
-/// second number: given `u_1 < q` it is uniform, and `u_1 / q < p` is what P2 writes. So it does not ask for
+/// [`one_number`]: Self::one_number
+/// [`two_numbers`]: Self::two_numbers
+/// [`trajectories`]: Self::trajectories
+///
+/// All three are one piece of code: a gate that does not need `p`, then the deposition. For the first one `u_1 / q`
+/// is the second number: given `u_1 < q` it is uniform, and `u_1 / q < p` is what P2 writes. So it does not ask for
 /// `p` in vain either.
 ///
-/// P2 prints the two-number variant with `p` in both tests; the first is against `q`. In the trajectory variant there is no
-/// further `1 / q`: the global map has seen `floor(q N)` paths, and is divided by that, exactly, whatever was rounded.
+/// P2 prints the two-number variant with `p` in both tests; the first is against `q`. In the trajectory variant there
+/// is no further `1 / q`: the global map has seen `floor(q N)` paths, and is divided by that, exactly, whatever was
+/// rounded.
 ///
 /// **Unbiased**, all three, with equal expectations. With `X` the sum of a path's photons `x_i` in some estimate, the
-/// variance of the global map is `(Var X + (1/q - 1) sum E x_i^2) / N` if photons are thinned and `Var X / (q N)` if paths
-/// are: paths are better where a path leaves one photon (`E x^2 > Var x`), photons where a path leaves many that are alike.
-/// Paths leave nothing to chance, though, and of a low-discrepancy sequence the global map gets a contiguous part.
+/// variance of the global map is `(Var X + (1/q - 1) sum E x_i^2) / N` if photons are thinned and `Var X / (q N)` if
+/// paths are: paths are better where a path leaves one photon (`E x^2 > Var x`), photons where a path leaves many
+/// that are alike. Paths leave nothing to chance, though, and of a low-discrepancy sequence the global map gets a
+/// contiguous part.
 ///
-/// **Cost.** A comparison; the third variant traces nothing for the global map beyond `floor(q N)` paths, and a renderer
-/// may end those paths as soon as they cannot become caustic.
+/// **Cost.** A comparison; the third variant traces nothing for the global map beyond `floor(q N)` paths, and a
+/// renderer may end those paths as soon as they cannot become caustic.
 ///
 /// **Source.** P2, sections 2.2 and 2.3.
 ///
@@ -125,8 +131,8 @@ impl MapPartition {
 
     /// Keeps a photon of the given path, its flux divided by the probability to be kept, or discards it.
     ///
-    /// `u`: two numbers, uniform in `[0, 1)`, for this photon alone. The path's index counts from zero; only the trajectory
-    /// variant looks at it.
+    /// `u`: two numbers, uniform in `[0, 1)`, for this photon alone. The path's index counts from zero; only the
+    /// trajectory variant looks at it.
     #[inline]
     pub fn decide<F: Flux>(
         &self,
@@ -209,8 +215,8 @@ mod tests {
     const PATHS: u64 = 64;
     const P: f64 = 3.0 / 8.0;
 
-    /// The expected flux per path in the two maps, exactly: all pairs of random numbers, one between each two multiples of
-    /// 1/64, for each path.
+    /// The expected flux per path in the two maps, exactly: all pairs of random numbers, one between each two
+    /// multiples of 1/64, for each path.
     fn expected(partition: &MapPartition) -> [f64; 2] {
         let deposition = |_: [f32; 3], _: [f32; 3]| P;
         let mut maps = PhotonMaps::new();

@@ -32,13 +32,14 @@ fn validate(radius: f32, alpha: f64) -> Result<f64, ProgressiveError> {
 /// r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1),    i = 1, 2, ..        result: mean over i of the estimate with radius r_i
 /// ```
 ///
-/// **Symbols.** `r_i`: radius of iteration `i`, the same for all points or any first radius of each point; `alpha` in `(0, 1)`.
+/// **Symbols.** `r_i`: radius of iteration `i`, the same for all points or any first radius of each point; `alpha` in
+/// `(0, 1)`.
 ///
 /// **Assumptions.** Each iteration traces photons of its own. Any kernel.
 ///
-/// **Consistent**, for every `alpha` in `(0, 1)`: `r_i^2 ~ r_1^2 i^(alpha-1) / Gamma(1+alpha)`, so the variance of the mean
-/// falls as `n^-alpha` and its bias as `n^(alpha-1)`. Biased after finitely many. `alpha = 2/3` balances variance and
-/// squared bias: the mean squared error falls as `n^(-2/3)`, and no `alpha` does better.
+/// **Consistent**, for every `alpha` in `(0, 1)`: `r_i^2 ~ r_1^2 i^(alpha-1) / Gamma(1+alpha)`, so the variance of
+/// the mean falls as `n^-alpha` and its bias as `n^(alpha-1)`. Biased after finitely many. `alpha = 2/3` balances
+/// variance and squared bias: the mean squared error falls as `n^(-2/3)`, and no `alpha` does better.
 ///
 /// **Cost.** Two multiplications per iteration; 24 bytes.
 ///
@@ -101,12 +102,12 @@ impl ProgressiveRadius {
 /// radiance ~ tau / (pi R^2 n)
 /// ```
 ///
-/// **Symbols.** `R`: radius; `N`: photons counted so far; `M`, `tau_M`: number and sum of flux times BSDF of the photons that the
-/// current iteration finds within `R`; `n`: paths of all iterations together.
+/// **Symbols.** `R`: radius; `N`: photons counted so far; `M`, `tau_M`: number and sum of flux times BSDF of the
+/// photons that the current iteration finds within `R`; `n`: paths of all iterations together.
 ///
-/// **Assumptions.** The density of photons is uniform within `R` (that is what the factor `R'^2 / R^2` says), and each iteration traces
-/// photons of its own. With stochastic progressive photon mapping the point moves within a pixel from iteration to
-/// iteration, and the state belongs to the pixel.
+/// **Assumptions.** The density of photons is uniform within `R` (that is what the factor `R'^2 / R^2` says), and
+/// each iteration traces photons of its own. With stochastic progressive photon mapping the point moves within a
+/// pixel from iteration to iteration, and the state belongs to the pixel.
 ///
 /// **Consistent**, biased after finitely many iterations. The radius depends on the photons, hence on chance; with
 /// [`ProgressiveRadius`] it does not, which is easier to reason about and lets any kernel be used.
@@ -143,8 +144,8 @@ impl<F: Flux> ProgressivePoint<F> {
         Ok(Self { radius_squared: validate(radius, alpha)?, photons: 0.0, alpha, flux: F::ZERO })
     }
 
-    /// Adds what an iteration found within [`radius`](Self::radius): the number of photons, and the sum of their flux times
-    /// BSDF, not weighted by a kernel and not divided by the number of paths.
+    /// Adds what an iteration found within [`radius`](Self::radius): the number of photons, and the sum of their flux
+    /// times BSDF, not weighted by a kernel and not divided by the number of paths.
     ///
     /// Sums that are not finite are ignored, photons included.
     pub fn add(&mut self, found: u64, flux: F) {
@@ -200,7 +201,8 @@ mod tests {
         assert!((f64::from(radius.radius()).powi(2) / limit - 1.0).abs() < 1e-5);
     }
 
-    /// Bias goes with the mean of `r_i^2`, variance with that of `1 / r_i^2` over `n`: slopes between `10^5` and `10^6` iterations.
+    /// Bias goes with the mean of `r_i^2`, variance with that of `1 / r_i^2` over `n`: slopes between `10^5` and
+    /// `10^6` iterations.
     #[test]
     fn bias_and_variance_fall_at_the_stated_rates() {
         for alpha in [0.4, 2.0 / 3.0, 0.8] {

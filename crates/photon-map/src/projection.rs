@@ -24,8 +24,8 @@ impl Cell {
     /// Half the angle of a cone around the cell's centre that holds all its directions under
     /// [`sphere_direction`](crate::sphere_direction).
     ///
-    /// With at least two columns no point is farther from the centre than the corners: for equal `z` the angle grows with the
-    /// difference of azimuths, and along a meridian at most 90 degrees off its cosine is concave.
+    /// With at least two columns no point is farther from the centre than the corners: for equal `z` the angle grows
+    /// with the difference of azimuths, and along a meridian at most 90 degrees off its cosine is concave.
     fn half_angle(&self) -> f64 {
         if self.columns < 2 {
             return PI;
@@ -55,27 +55,28 @@ pub enum ProjectionError {
     Cone(usize),
 }
 
-/// Which parts of a light's emission meet caustic generators, so that photons for **direct** caustics are shot nowhere else.
+/// Which parts of a light's emission meet caustic generators, so that photons for **direct** caustics are shot
+/// nowhere else.
 ///
 /// ```text
 /// integral over [0,1)^2 of g(u) du  =  s E g(U),     U uniform in the marked cells,  s = marked / all cells
 /// ```
 ///
-/// **Symbols.** `u`: the two random numbers that the light's own sampling turns into a direction; `g`: what the photons of such a
-/// path contribute, zero outside of the marked cells. `s`: [`share`](Self::share). Being a map of the random numbers, it
-/// goes with any light; multiply the flux by `s`.
+/// **Symbols.** `u`: the two random numbers that the light's own sampling turns into a direction; `g`: what the
+/// photons of such a path contribute, zero outside of the marked cells. `s`: [`share`](Self::share). Being a map of
+/// the random numbers, it goes with any light; multiply the flux by `s`.
 ///
-/// **Assumptions.** `g = 0` outside of the marked cells: unmarked cells hit no caustic generator first. **Unbiased** then for
-/// caustics of light that comes directly from the light (`L S+ D`), biased otherwise: marks have to be
-/// conservative, as those of [`for_cones`](Self::for_cones) around bounding spheres are. Caustics of indirect light are out of
-/// reach of this method; [`MapPartition`](crate::MapPartition) has them all. If other paths fill the caustic map as well,
-/// they must leave out what this one makes: photons of first emission in a marked cell ([`contains`](Self::contains)) with
-/// specular bounces only.
+/// **Assumptions.** `g = 0` outside of the marked cells: unmarked cells hit no caustic generator first. **Unbiased**
+/// then for caustics of light that comes directly from the light (`L S+ D`), biased otherwise: marks have to be
+/// conservative, as those of [`for_cones`](Self::for_cones) around bounding spheres are. Caustics of indirect light
+/// are out of reach of this method; [`MapPartition`](crate::MapPartition) has them all. If other paths fill the
+/// caustic map as well, they must leave out what this one makes: photons of first emission in a marked cell
+/// ([`contains`](Self::contains)) with specular bounces only.
 ///
 /// **Cost.** One multiplication per sample; four bytes per marked cell, one bit per cell.
 ///
-/// **Source.** H. W. Jensen and N. J. Christensen, "Photon maps in bidirectional Monte Carlo ray tracing of complex objects",
-/// Computers & Graphics 19(2), 1995. P2 compares with it in section 2.2.
+/// **Source.** H. W. Jensen and N. J. Christensen, "Photon maps in bidirectional Monte Carlo ray tracing of complex
+/// objects", Computers & Graphics 19(2), 1995. P2 compares with it in section 2.2.
 ///
 /// # Example
 /// ```

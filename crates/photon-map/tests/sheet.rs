@@ -22,7 +22,8 @@ fn place(frame: &Frame, centre: [f32; 3], [x, y, z]: [f64; 3]) -> [f32; 3] {
     [along(0), along(1), along(2)]
 }
 
-/// `n` photons of flux 1 around the origin whose squared distances are `(j + 1/2) / n`: a uniform disk of radius 1 and density `n / pi`.
+/// `n` photons of flux 1 around the origin whose squared distances are `(j + 1/2) / n`: a uniform disk of radius 1
+/// and density `n / pi`.
 fn disk(frame: &Frame, centre: [f32; 3], n: u32) -> Photons<f64> {
     const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
     let mut photons = Photons::new();
@@ -50,7 +51,7 @@ fn a_uniform_sheet_has_its_irradiance_with_every_kernel_and_compression() {
                     let at = GatherPoint::on(centre, frame[2]).with_compression(compression);
                     let estimation = DensityEstimation { gather: Gather::within(radius).unwrap(), kernel };
                     let found = map.irradiance(&estimation, &at, &mut Scratch::default());
-                    // The disk's total flux per path is 1, on the area pi. One photon more or less at the rim is allowed for.
+                    // Total flux per path is 1, on the area pi. Allowed: one photon more or less at the rim.
                     let allowed = 1.5 / (f64::from(N) * f64::from(radius).powi(2));
                     assert!((found.value * PI - 1.0).abs() < allowed, "{kernel:?} {radius} {compression}: {found:?}");
                     let inside = f64::from(N) * f64::from(radius).powi(2);
@@ -94,7 +95,8 @@ fn the_bias_of_nearest_photons_is_as_derived() {
     }
 }
 
-/// A wall beside the point: of its photons those in a half ellipse of area `pi (r^2 - a^2) / (2 s)` leak onto the floor.
+/// A wall beside the point: of its photons those in a half ellipse of area `pi (r^2 - a^2) / (2 s)` leak onto the
+/// floor.
 #[test]
 fn compression_divides_what_a_wall_leaks() {
     const SPACING: f64 = 0.002;

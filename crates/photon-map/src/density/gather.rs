@@ -8,14 +8,16 @@ const LEAST_RADIUS: f32 = 1.0 / 4096.0;
 /// How far to look for photons: a fixed radius, or as far as the `k`-th nearest.
 ///
 /// # Fixed radius
-/// The estimate is linear in the photons: its bias is that of the kernel alone, zero where irradiance is uniform within the radius.
+/// The estimate is linear in the photons: its bias is that of the kernel alone, zero where irradiance is uniform
+/// within the radius.
 ///
 /// # The nearest photons
 /// ```text
 /// r = clamp(distance of the k-th nearest photon, R / 4096, R),     photons with d < r count
 /// ```
-/// The disk is open: the `k`-th nearest photon gives the radius, and only the `k - 1` nearer ones are summed up. On a uniform sheet of
-/// density `lambda` the expected number `pi lambda r^2` is Gamma(k) distributed, so with the constant kernel
+/// The disk is open: the `k`-th nearest photon gives the radius, and only the `k - 1` nearer ones are summed up. On a
+/// uniform sheet of density `lambda` the expected number `pi lambda r^2` is Gamma(k) distributed, so with the
+/// constant kernel
 ///
 /// ```text
 /// E[ (k-1) / (pi r^2) ] = lambda            this crate: unbiased
@@ -25,12 +27,13 @@ const LEAST_RADIUS: f32 = 1.0 / 4096.0;
 /// - for every kernel: given `r`, the nearer photons are independent in the disk;
 /// - for a fixed number of independent photons: `r^2` is Beta distributed;
 /// - with the clamp: `E[N(R) / R^2; N(R) < k]` fills in exactly what `r_k > R` cuts off;
-/// - where photons are *not* of equal density or flux, as after deposition, if only irradiance is uniform: `pi lambda r^2` is then
-///   the expected number `Lambda(r)` of photons in the ball, and `E[(k-1) / Lambda(r_k)] = 1`;
-/// - if photons of other surfaces are around, which the tests of [`GatherPoint`](crate::GatherPoint) then leave out, for the same reason.
+/// - where photons are *not* of equal density or flux, as after deposition, if only irradiance is uniform: `pi lambda
+///   r^2` is then the expected number `Lambda(r)` of photons in the ball, and `E[(k-1) / Lambda(r_k)] = 1`;
+/// - if photons of other surfaces are around, which the tests of [`GatherPoint`](crate::GatherPoint) then leave out,
+///   for the same reason.
 ///
-/// Where irradiance is not uniform, the estimate is biased like one with a fixed radius, and not only by the kernel's second moment, since
-/// radius and photons depend on each other.
+/// Where irradiance is not uniform, the estimate is biased like one with a fixed radius, and not only by the kernel's
+/// second moment, since radius and photons depend on each other.
 ///
 /// # Example
 /// ```
@@ -64,7 +67,8 @@ fn positive_radius(radius: f32) -> Result<f32, GatherError> {
     if (1e-15..=1e18).contains(&radius) { Ok(radius) } else { Err(GatherError::Radius(radius)) }
 }
 
-/// Memory that queries for the nearest photons use again and again: keep one per thread. Queries within a fixed radius need none.
+/// Memory that queries for the nearest photons use again and again: keep one per thread. Queries within a fixed
+/// radius need none.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     pub(crate) found: Vec<Neighbor>,
@@ -79,8 +83,8 @@ impl Gather {
         Ok(Self { count: None, max_radius: positive_radius(radius)? })
     }
 
-    /// As far as the `count`-th nearest photon, but not farther than `max_radius` (and not nearer than `max_radius / 4096`, so that photons that
-    /// coincide give no infinite density).
+    /// As far as the `count`-th nearest photon, but not farther than `max_radius` (and not nearer than `max_radius /
+    /// 4096`, so that photons that coincide give no infinite density).
     ///
     /// # Errors
     /// [`GatherError`] if there are less than two photons to count, or the radius is not between 1e-15 and 1e18.
@@ -103,9 +107,11 @@ impl Gather {
         self.count
     }
 
-    /// Calls `f` with the squared radius, and with id and squared distance of all points at most as far; returns the squared radius.
+    /// Calls `f` with the squared radius, and with id and squared distance of all points at most as far; returns the
+    /// squared radius.
     ///
-    /// Squared, because the root of the `k`-th photon's squared distance need not square to it, and that photon must not count.
+    /// Squared, because the root of the `k`-th photon's squared distance need not square to it, and that photon must
+    /// not count.
     #[inline]
     pub(crate) fn for_each<I: RangeIndex>(
         &self,

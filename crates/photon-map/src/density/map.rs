@@ -32,20 +32,21 @@ pub struct Estimate<T> {
 /// L(x, wo) ~ 1/N sum over k of K(t_k) / r^2 f(wi_k, x, wo) flux_k   reflected radiance, W/(m^2 sr)
 /// ```
 ///
-/// **Symbols.** `N`: paths; `K`: [`Kernel`]; `t_k`: squared distance over `r^2` in the metric of [`GatherPoint`]; `r`: radius of [`Gather`];
-/// `f`: BSDF, without cosine: that is in the flux of the photons that hit the surface.
+/// **Symbols.** `N`: paths; `K`: [`Kernel`]; `t_k`: squared distance over `r^2` in the metric of [`GatherPoint`];
+/// `r`: radius of [`Gather`]; `f`: BSDF, without cosine: that is in the flux of the photons that hit the surface.
 ///
-/// **Assumptions.** The surface within the radius is a plane, all of it lit: near its rim a part of the disk has no photons, and the
-/// estimate is too small. Irradiance is uniform within the radius.
+/// **Assumptions.** The surface within the radius is a plane, all of it lit: near its rim a part of the disk has no
+/// photons, and the estimate is too small. Irradiance is uniform within the radius.
 ///
-/// **Biased** for a fixed radius by `1/2 mu_2 r^2` times the Laplacian of the irradiance ([`Kernel::second_moment`]); the variance is at most
-/// [`Kernel::roughness`]` / r^2` times the sum of `(flux / N)^2` per area. **Consistent** if the radius shrinks slowly:
-/// [`ProgressiveRadius`](crate::ProgressiveRadius). Exact on uniform sheets.
+/// **Biased** for a fixed radius by `1/2 mu_2 r^2` times the Laplacian of the irradiance ([`Kernel::second_moment`]);
+/// the variance is at most [`Kernel::roughness`]` / r^2` times the sum of `(flux / N)^2` per area. **Consistent** if
+/// the radius shrinks slowly: [`ProgressiveRadius`](crate::ProgressiveRadius). Exact on uniform sheets.
 ///
-/// **Cost.** A query tests the photons around the point. Building sorts photons by place once, so that queries read them in a row.
+/// **Cost.** A query tests the photons around the point. Building sorts photons by place once, so that queries read
+/// them in a row.
 ///
-/// **Memory.** 32 bytes per photon with RGB flux and 16 to 32 for the grid: 48 to 64 MB per million photons, 3.2 GB at most for 50
-/// million; twice the photons and the grid while it is built. [`bytes`](Self::bytes) says it exactly.
+/// **Memory.** 32 bytes per photon with RGB flux and 16 to 32 for the grid: 48 to 64 MB per million photons, 3.2 GB
+/// at most for 50 million; twice the photons and the grid while it is built. [`bytes`](Self::bytes) says it exactly.
 ///
 /// **Source.** H. W. Jensen, "Global illumination using photon maps", 1996; P2, section 2.
 ///
@@ -180,7 +181,8 @@ impl<F: Flux, I: RangeIndex> PhotonMap<F, I> {
         Estimate { value: sum.scale(scale), photons: count, radius: r2.sqrt() }
     }
 
-    /// Number and sum of the photons that count at a point, unweighted: what [`ProgressivePoint::add`](crate::ProgressivePoint::add) takes.
+    /// Number and sum of the photons that count at a point, unweighted: what
+    /// [`ProgressivePoint::add`](crate::ProgressivePoint::add) takes.
     ///
     /// Finds nothing for a radius that is not between 1e-15 and 1e18.
     pub fn collect<T: Flux>(
@@ -202,10 +204,12 @@ impl<F: Flux, I: RangeIndex> PhotonMap<F, I> {
         (count, sum)
     }
 
-    /// A radius within which about `count` photons are: the median over points of the distance of the `count`-th nearest.
+    /// A radius within which about `count` photons are: the median over points of the distance of the `count`-th
+    /// nearest.
     ///
-    /// A beginning for a fixed or a [`ProgressiveRadius`](crate::ProgressiveRadius); points are those that the camera sees. Points with fewer
-    /// photons within `max_radius` count as that. `None` without points, or if `count` is zero.
+    /// A beginning for a fixed or a [`ProgressiveRadius`](crate::ProgressiveRadius); points are those that the camera
+    /// sees. Points with fewer photons within `max_radius` count as that. `None` without points, or if `count` is
+    /// zero.
     #[must_use]
     pub fn typical_radius(
         &self,

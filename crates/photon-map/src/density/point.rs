@@ -8,13 +8,15 @@ use crate::vector::{dot, normalise, subtract};
 /// photon counts if  wi . n > c      and      t = (d^2 + (s^2 - 1) h^2) / r^2 < 1,      h = (x_k - x) . n
 /// ```
 ///
-/// **Symbols.** `n`: normal on the side that is looked at; `wi`: where the photon came from; `c`: least cosine; `d`: distance of the photon,
-/// `h`: its height above the tangent plane, `r`: radius; `s`: compression. `t` is what the [`Kernel`](crate::Kernel) gets.
+/// **Symbols.** `n`: normal on the side that is looked at; `wi`: where the photon came from; `c`: least cosine; `d`:
+/// distance of the photon, `h`: its height above the tangent plane, `r`: radius; `s`: compression. `t` is what the
+/// [`Kernel`](crate::Kernel) gets.
 ///
-/// - The **normal test** leaves out photons that arrived at the other side: of the back of a thin wall, of another surface that faces away.
-/// - The **disk compression** shrinks the ball to an ellipsoid of height `r / s` (Jensen's disk): of a wall that meets the floor
-///   at the point's distance, only the strip of that height is left. On a plane `h = 0`, nothing changes, exactly. On a surface of radius of curvature `R`
-///   photons at distance `d` count as if at `d^2 (1 + (s^2 - 1) d^2 / 4 R^2)`: keep `s r` well below `R`.
+/// - The **normal test** leaves out photons that arrived at the other side: of the back of a thin wall, of another
+///   surface that faces away.
+/// - The **disk compression** shrinks the ball to an ellipsoid of height `r / s` (Jensen's disk). What a wall leaks onto
+///   the floor beside it is divided by `s`. On a plane `h = 0`, and nothing changes, exactly. On a surface of radius of
+///   curvature `R` photons count as farther by the factor `1 + (s^2-1) d^2 / (4 R^2)` in `d^2`: keep `s r` well below `R`.
 ///
 /// Both make estimates *less* biased at corners and walls, and neither biases them on a plane.
 ///
@@ -38,8 +40,8 @@ pub struct GatherPoint {
 }
 
 impl GatherPoint {
-    /// A compression that tells floors from walls and leaves curved surfaces alone: at a tenth of the radius of curvature the rim counts as
-    /// 2 percent farther.
+    /// A compression that tells floors from walls and leaves curved surfaces alone: at a tenth of the radius of
+    /// curvature the rim counts as 2 percent farther.
     pub const COMPRESSION: f32 = 4.0;
 
     /// A point in space: the whole ball, no normal.
@@ -48,7 +50,8 @@ impl GatherPoint {
         Self { position, normal: None, least_cosine: 0.0, flattening: 0.0 }
     }
 
-    /// A point on a surface, seen from the side of the normal (of any length), with compression [`COMPRESSION`](Self::COMPRESSION).
+    /// A point on a surface, seen from the side of the normal (of any length), with compression
+    /// [`COMPRESSION`](Self::COMPRESSION).
     ///
     /// A normal that is zero or not finite counts as none.
     #[must_use]
@@ -57,7 +60,8 @@ impl GatherPoint {
         if point.normal.is_some() { point.with_compression(Self::COMPRESSION) } else { point }
     }
 
-    /// With another compression: 1 is a ball. Numbers below 1 and NaN count as 1, above 1e6 as 1e6. Without a normal it has no effect.
+    /// With another compression: 1 is a ball. Numbers below 1 and NaN count as 1, above 1e6 as 1e6. Without a normal
+    /// it has no effect.
     #[must_use]
     pub fn with_compression(mut self, compression: f32) -> Self {
         let s = compression.clamp(1.0, 1e6);
@@ -65,8 +69,8 @@ impl GatherPoint {
         self
     }
 
-    /// With another least cosine between the normal and where photons come from. Zero by default: everything from the front. With -1 nothing is
-    /// tested.
+    /// With another least cosine between the normal and where photons come from. Zero by default: everything from the
+    /// front. With -1 nothing is tested.
     #[must_use]
     pub const fn with_least_cosine(mut self, cosine: f32) -> Self {
         self.least_cosine = cosine;

@@ -39,19 +39,20 @@ impl<G: Fn([f32; 3], [f32; 3]) -> f64> DirectionWeight for G {
 ///
 /// **Symbols.** `W`: importance, see [`ImportanceMap`]; `f`: [`ImportanceScale`]; the bound: [`Bound`].
 ///
-/// **Unbiased** with [`Bound::Floor`]: `p >= eps > 0` everywhere. **Biased** with [`Bound::Cutoff`]: light is lost where
-/// `f W < eps`, places without importon included. With `Cutoff(0.0)` these places alone are lost.
-/// Where `p = 1`, in what is seen well, photons keep their flux.
+/// **Unbiased** with [`Bound::Floor`]: `p >= eps > 0` everywhere. **Biased** with [`Bound::Cutoff`]: light is lost
+/// where `f W < eps`, places without importon included. With `Cutoff(0.0)` these places alone are lost. Where `p =
+/// 1`, in what is seen well, photons keep their flux.
 ///
-/// **Cost.** One density estimate per photon, which is dear; [`MapPartition`](crate::MapPartition) asks for it only when it must. Within
-/// a fixed radius nothing is allocated.
+/// **Cost.** One density estimate per photon, which is dear; [`MapPartition`](crate::MapPartition) asks for it only
+/// when it must. Within a fixed radius nothing is allocated.
 ///
 /// **Source.** P2, sections 2.1 and 2.3.
 ///
 /// # Example
 /// ```
 /// use photon_map::{
-///     Bound, DensityEstimation, DepositionExt, Gather, ImportanceMap, ImportanceScale, ImportonDeposition, Kernel, Photon, PhotonMap, Photons,
+///     Bound, DensityEstimation, DepositionExt, Gather, ImportanceMap, ImportanceScale, ImportonDeposition, Kernel, Photon,
+///     PhotonMap, Photons,
 /// };
 /// // The camera sees a square of 1 m around the origin, evenly.
 /// let mut importons = Photons::new();

@@ -12,11 +12,12 @@ use crate::{DensityEstimation, DirectionalHistogram, GatherPoint, PhotonMap, Scr
 /// W(x, wi) = 1/N sum over importons k of K(t_k) / r^2 W_k g(wi, wi_k)
 /// ```
 ///
-/// **Symbols.** `W_k`: importance that importon `k` carries; `g`: how much light from `wi` matters to an observer that came from `wi_k`, a
-/// [`DirectionWeight`] (a BSDF for instance).
+/// **Symbols.** `W_k`: importance that importon `k` carries; `g`: how much light from `wi` matters to an observer
+/// that came from `wi_k`, a [`DirectionWeight`] (a BSDF for instance).
 ///
-/// **Biased** as every density estimate, and harmless: what is made of it here are probabilities, which need not be right. Importance shines through
-/// thin walls, for photons that are asked about have no normal; P2 calls it energy bleeding.
+/// **Biased** as every density estimate, and harmless: what is made of it here are probabilities, which need not be
+/// right. Importance shines through thin walls, for photons that are asked about have no normal; P2 calls it energy
+/// bleeding.
 ///
 /// **Source.** P2, section 2.3; I. Peter and G. Pietrek 1998.
 #[derive(Clone, Debug)]
@@ -26,7 +27,8 @@ pub struct ImportanceMap<I = HashGrid> {
 }
 
 impl<I: RangeIndex> ImportanceMap<I> {
-    /// From importons. With [`Gather::nearest`](crate::Gather::nearest) queries allocate, but hardly ever come back empty.
+    /// From importons. With [`Gather::nearest`](crate::Gather::nearest) queries allocate, but hardly ever come back
+    /// empty.
     #[must_use]
     pub const fn new(importons: PhotonMap<f32, I>, estimation: DensityEstimation) -> Self {
         Self { importons, estimation }
@@ -47,8 +49,8 @@ impl<I: RangeIndex> ImportanceMap<I> {
         self.importons.estimate(&self.estimation, &at, &mut scratch, contribution).value
     }
 
-    /// Fills a histogram with the directions that the importons around a place came from, each with its importance and kernel: where scattered light
-    /// is wanted. What was in the histogram is forgotten.
+    /// Fills a histogram with the directions that the importons around a place came from, each with its importance
+    /// and kernel: where scattered light is wanted. What was in the histogram is forgotten.
     ///
     /// `at` with a normal leaves importons of the other side out.
     pub fn directions(&self, at: &GatherPoint, histogram: &mut DirectionalHistogram) {

@@ -6,15 +6,16 @@
 /// f = 1 / quantile of the positive W(x_i),      p(x) = min(1, f W(x))
 /// ```
 ///
-/// **Symbols.** `W(x_i)`: importance at the points that test rays from the camera hit first. Quantile 0 is their minimum, as P2 has it: every photon is
-/// kept where any test ray found an importon.
+/// **Symbols.** `W(x_i)`: importance at the points that test rays from the camera hit first. Quantile 0 is their
+/// minimum, as P2 has it: every photon is kept where any test ray found an importon.
 ///
-/// **What if a test ray finds no importon?** P2's minimum is zero then, and `f` infinite: `p = 1` wherever there is any importance, 0 or
-/// the floor elsewhere, and nothing is saved. Here such queries are left out of the quantile and counted: [`empty_share`](Self::empty_share).
-/// They lie in places that the camera sees and `p` does not know of: a floor keeps the estimate unbiased there, with few photons of much flux; a cutoff makes these places
-/// black. So if the share is more than a few percent, trace more importons or look farther for them (or for the nearest). Even without empty
-/// queries the minimum is as unreliable as the worst of them: a quantile of 0.05 is a good choice, at which `p = 1` for
-/// 95 percent of what test rays see. If *all* are empty there is no scale, and an error.
+/// **What if a test ray finds no importon?** P2's minimum is zero then, and `f` infinite: `p = 1` wherever there is
+/// any importance, 0 or the floor elsewhere, and nothing is saved. Here such queries are left out of the quantile and
+/// counted: [`empty_share`](Self::empty_share). They lie in places that the camera sees and `p` does not know of: a
+/// floor keeps the estimate unbiased there, with few photons of much flux; a cutoff makes these places black. So if
+/// the share is more than a few percent, trace more importons or look farther for them (or for the nearest). Even
+/// without empty queries the minimum is as unreliable as the worst of them: a quantile of 0.05 is a good choice, at
+/// which `p = 1` for 95 percent of what test rays see. If *all* are empty there is no scale, and an error.
 ///
 /// The choice of `f` changes variance and memory, never the expectation, as long as the bound is a floor.
 ///
@@ -58,8 +59,8 @@ impl ImportanceScale {
     /// From the importance that test rays found; zeros and numbers that are negative or not finite count as empty.
     ///
     /// # Errors
-    /// [`ScaleError::NoImportance`] if all queries are empty or there is none, [`ScaleError::Quantile`] if that is not in `[0, 1]`, [`ScaleError::Scale`] if
-    /// one over the quantile overflows.
+    /// [`ScaleError::NoImportance`] if all queries are empty or there is none, [`ScaleError::Quantile`] if that is
+    /// not in `[0, 1]`, [`ScaleError::Scale`] if one over the quantile overflows.
     pub fn from_queries(queries: impl IntoIterator<Item = f64>, quantile: f64) -> Result<Self, ScaleError> {
         if !(0.0..=1.0).contains(&quantile) {
             return Err(ScaleError::Quantile(quantile));

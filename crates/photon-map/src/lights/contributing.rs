@@ -4,13 +4,14 @@ use crate::Scratch;
 
 /// The lights that primary photons around a point came from, with the number of photons of each.
 ///
-/// A sparse set: an array over all lights that is never cleared, and the list of those in the set. Inserting and asking are
-/// O(1), forgetting everything is O(1), and nothing is O(number of lights) but making it. Keep one per thread.
+/// A sparse set: an array over all lights that is never cleared, and the list of those in the set. Inserting and
+/// asking are O(1), forgetting everything is O(1), and nothing is O(number of lights) but making it. Keep one per
+/// thread.
 ///
 /// **Memory.** 4 bytes per light of the scene, and 8 per contributing light.
 ///
-/// **Source.** P. Briggs and L. Torczon, "An efficient representation for sparse sets", 1993; the lights are `L_con` of P2,
-/// section 3.
+/// **Source.** P. Briggs and L. Torczon, "An efficient representation for sparse sets", 1993; the lights are `L_con`
+/// of P2, section 3.
 ///
 /// # Example
 /// ```
@@ -112,7 +113,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_a_map_of_counts_again_and_again(rounds in prop::collection::vec(prop::collection::vec(0_u32..40, 0..60), 1..5)) {
+        fn it_is_a_map_of_counts_again_and_again(
+            rounds in prop::collection::vec(prop::collection::vec(0_u32..40, 0..60), 1..5),
+        ) {
             let mut set = ContributingLights::new(30);
             for lights in rounds {
                 let mut counts = BTreeMap::new();

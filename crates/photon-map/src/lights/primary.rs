@@ -15,8 +15,8 @@ struct PrimaryPhoton {
 
 /// Primary photons while they are collected: those that came directly from a light.
 ///
-/// **Apart from deposition.** To be offered every photon *before* a [`Deposition`](crate::Deposition) decides: the lights that contribute are found from all primary
-/// photons, or lights would be missing where deposition keeps few.
+/// **Apart from deposition.** To be offered every photon *before* a [`Deposition`](crate::Deposition) decides: the
+/// lights that contribute are found from all primary photons, or lights would be missing where deposition keeps few.
 ///
 /// **Memory.** 16 bytes per photon, and 16 to 32 more in the map: 32 to 48 MB per million.
 ///
@@ -62,11 +62,13 @@ impl PrimaryPhotons {
 
 /// Finds the lights that contribute to a point: those that primary photons around it came from.
 ///
-/// **Assumptions.** A light that lights the point leaves photons within the radius, with high probability: with `n` photons of a light on the area `A`
-/// that it lights, it is missed in a disk of radius `r` with probability about `exp(-n pi r^2 / A)`. What is missed is left to the other
-/// rays of a [`LightSelection`](crate::LightSelection), so nothing is biased by it.
+/// **Assumptions.** A light that lights the point leaves photons within the radius, with high probability: with `n`
+/// photons of a light on the area `A` that it lights, it is missed in a disk of radius `r` with probability about
+/// `exp(-n pi r^2 / A)`. What is missed is left to the other rays of a [`LightSelection`](crate::LightSelection), so
+/// nothing is biased by it.
 ///
-/// **Cost.** O(photons in the ball), and `O(c log c)` for `c` contributing lights; nothing is proportional to the number of lights.
+/// **Cost.** O(photons in the ball), and `O(c log c)` for `c` contributing lights; nothing is proportional to the
+/// number of lights.
 ///
 /// **Source.** P2, section 3.
 ///
@@ -126,7 +128,8 @@ impl PrimaryPhotonMap {
         self.lights.capacity() * size_of::<u32>() + self.index.bytes()
     }
 
-    /// Replaces what is in `contributing` by the lights of the photons around a point; lights beyond its number of lights are left out.
+    /// Replaces what is in `contributing` by the lights of the photons around a point; lights beyond its number of
+    /// lights are left out.
     pub fn contributing(&self, position: [f32; 3], gather: &Gather, contributing: &mut ContributingLights) {
         let mut scratch = contributing.begin();
         gather.for_each(&self.index, position, &mut scratch, |_, id, _| contributing.insert(self.lights[id]));

@@ -13,7 +13,8 @@ pub enum Allocation {
     /// With enough rays, one for each light, the rest in proportion. With fewer, lights are sorted by importance: the
     /// brightest get one ray each for certain, and the others share what is left in proportion.
     ///
-    /// The sorting is Ward's (1991); his estimate for the dim lights is replaced by a random choice, which keeps it unbiased.
+    /// The sorting is Ward's (1991); his estimate for the dim lights is replaced by a random choice, which keeps it
+    /// unbiased.
     #[default]
     BrightestFirst,
 }
@@ -52,24 +53,28 @@ pub enum SelectionError {
 /// j not in C  e_j = S_other a_j / sum over i not in C of a_i
 /// ```
 ///
-/// **Symbols.** `s_j`: what light `j` contributes, an estimate by a ray to a random place on it; `C`: the contributing lights, from
-/// [`PrimaryPhotonMap`](crate::PrimaryPhotonMap); `S_con`, `S_other`: rays for those in `C` and for all others; `a_j`: the weight in the [`LightTable`];
-/// `m_j`: importance of a contributing light. `u`: one uniform number; it makes `E n_j = e_j` exactly, and their sum `S_con` always.
-/// With fewer rays than lights this is systematic resampling, with more it is stratification with unbiased rounding: one
-/// piece of code for P2's two cases.
+/// **Symbols.** `s_j`: what light `j` contributes, an estimate by a ray to a random place on it; `C`: the
+/// contributing lights, from [`PrimaryPhotonMap`](crate::PrimaryPhotonMap); `S_con`, `S_other`: rays for those in `C`
+/// and for all others; `a_j`: the weight in the [`LightTable`]; `m_j`: importance of a contributing light. `u`: one
+/// uniform number; it makes `E n_j = e_j` exactly, and their sum `S_con` always. With fewer rays than lights this is
+/// systematic resampling, with more it is stratification with unbiased rounding: one piece of code for P2's two
+/// cases.
 ///
-/// **Assumptions.** `s_j` is zero or estimated without bias for each ray. The set `C` is chosen independently of the rays.
+/// **Assumptions.** `s_j` is zero or estimated without bias for each ray. The set `C` is chosen independently of the
+/// rays.
 ///
-/// **Unbiased** for `S_other >= 1`, whatever `C` is: every light has `e_j > 0`. Importance below a thousandth of the mean is raised to that
-/// (zero, negative and NaN as well), so no contributing light is lost; infinite counts as very large. A light that
-/// contributes although it is not in `C` comes with the large weight `1 / e_j` and shows as a bright dot: choose
-/// the radius of the query large. **`S_other = 0` is biased**: light from outside of `C` is missing.
+/// **Unbiased** for `S_other >= 1`, whatever `C` is: every light has `e_j > 0`. Importance below a thousandth of the
+/// mean is raised to that (zero, negative and NaN as well), so no contributing light is lost; infinite counts as very
+/// large. A light that contributes although it is not in `C` comes with the large weight `1 / e_j` and shows as a
+/// bright dot: choose the radius of the query large. **`S_other = 0` is biased**: light from outside of `C` is
+/// missing.
 ///
-/// **Cost.** `O(|C| log |C| + S_con + S_other log M)`; nothing is proportional to the number `M` of lights, and nothing allocated once the
-/// vectors have grown. If `C` is empty its rays are not shot; if `C` is everything, the others' are not.
+/// **Cost.** `O(|C| log |C| + S_con + S_other log M)`; nothing is proportional to the number `M` of lights, and
+/// nothing allocated once the vectors have grown. If `C` is empty its rays are not shot; if `C` is everything, the
+/// others' are not.
 ///
-/// **Source.** P2, section 3; G. Ward, "Adaptive shadow testing for ray tracing", 1991; systematic sampling: W. G. Madow and L. H.
-/// Madow, "On the theory of systematic sampling", 1944.
+/// **Source.** P2, section 3; G. Ward, "Adaptive shadow testing for ray tracing", 1991; systematic sampling: W. G.
+/// Madow and L. H. Madow, "On the theory of systematic sampling", 1944.
 ///
 /// # Example
 /// ```

@@ -11,17 +11,19 @@ const UNITS: f64 = (1u64 << 32) as f64;
 /// P(j) = a_j / sum_i a_i,        P(j | not in C) = a_j / sum over i not in C of a_i
 /// ```
 ///
-/// **Symbols.** `a_j > 0`: the weight of light `j`: its emission area, its power, or 1 for P2's equation 1. `C`: the contributing lights.
+/// **Symbols.** `a_j > 0`: the weight of light `j`: its emission area, its power, or 1 for P2's equation 1. `C`: the
+/// contributing lights.
 ///
-/// **Exact.** Weights are rounded to whole numbers of `max_i a_i / 2^32`, at least one, and their prefix sums are whole numbers, too: the
-/// probabilities that are reported are those of the sampling, without cancellation, whatever is excluded. The rounding changes
-/// which probabilities these are, not the unbiasedness, and leaves every light a positive one.
+/// **Exact.** Weights are rounded to whole numbers of `max_i a_i / 2^32`, at least one, and their prefix sums are
+/// whole numbers, too: the probabilities that are reported are those of the sampling, without cancellation, whatever
+/// is excluded. The rounding changes which probabilities these are, not the unbiasedness, and leaves every light a
+/// positive one.
 ///
 /// **Cost.** Building is O(M) for `M` lights, 8 bytes each. Sampling is a binary search, O(log M), with exclusion
 /// O(log |C| + log M): one random number, no rejection, hence no worst case when nearly everything is excluded.
 ///
-/// **Source.** P2, section 3, equation 1 (with `s_j` for the summand), generalised to unequal weights; inversion of a prefix sum with
-/// the excluded parts cut out.
+/// **Source.** P2, section 3, equation 1 (with `s_j` for the summand), generalised to unequal weights; inversion of a
+/// prefix sum with the excluded parts cut out.
 ///
 /// # Example
 /// ```
@@ -101,15 +103,17 @@ impl LightTable {
         Ok(Self { prefix: (0..=lights as u64).map(|light| light << 32).collect() })
     }
 
-    /// Where paths of photons begin when importance guides them: the original choice by power, mixed with one by importance.
+    /// Where paths of photons begin when importance guides them: the original choice by power, mixed with one by
+    /// importance.
     ///
     /// ```text
     /// P(j) = (1 - b) power_j / sum power + b importance_j / sum importance
     /// ```
     ///
-    /// `b` in `[0, 1)`: the share that is guided. **Unbiased** if each path's flux is `power_j / P(j)`, whatever the importance, since every
-    /// light keeps `(1 - b)` of its original probability. Importance that is negative, infinite or NaN counts as zero; if all is
-    /// zero, the choice is by power. Source: Peter and Pietrek 1998, where `b = 1`.
+    /// `b` in `[0, 1)`: the share that is guided. **Unbiased** if each path's flux is `power_j / P(j)`, whatever the
+    /// importance, since every light keeps `(1 - b)` of its original probability. Importance that is negative,
+    /// infinite or NaN counts as zero; if all is zero, the choice is by power. Source: Peter and Pietrek 1998, where
+    /// `b = 1`.
     ///
     /// # Errors
     /// [`LightTableError`]; powers must be positive and finite.

@@ -47,7 +47,8 @@ fn nearest_photons_are_unbiased_on_a_uniform_sheet() {
     }
 }
 
-/// What must be uniform is irradiance, not the density of photons: those that deposition left are dense on one side, with less flux.
+/// What must be uniform is irradiance, not the density of photons: those that deposition left are dense on one side,
+/// with less flux.
 #[test]
 fn nearest_photons_of_unequal_density_are_unbiased_for_uniform_irradiance() {
     let check = SUITE.check("nearest photons of unequal density");

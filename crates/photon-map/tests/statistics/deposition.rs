@@ -75,7 +75,7 @@ fn a_floor_is_unbiased_everywhere() {
     let checks = ["seen", "unseen", "edge"].map(|place| SUITE.check(&format!("deposition with a floor: {place}")));
     let uniforms = checks[0].uniforms();
     let floor = irradiance(uniforms, Bound::Floor(0.03), Kept::Divided);
-    // Where the camera looks photons are kept as they are: as little noise as without deposition, far less than elsewhere.
+    // Where the camera looks photons are kept as they are: far less noise than elsewhere.
     assert!(floor[0].variance() < 0.1 * floor[1].variance());
     for (check, moments) in checks.into_iter().zip(&floor) {
         mean_is(check, moments, 1.0).expect_pass();

@@ -54,7 +54,8 @@ fn histogram() -> DirectionalHistogram {
     histogram
 }
 
-/// Laws of sampling: the mixture reports its density, and is distributed by it. The function is a lobe, part of it unguided.
+/// Laws of sampling: the mixture reports its density, and is distributed by it. The function is a lobe, part of it
+/// unguided.
 #[test]
 fn guided_directions_are_distributed_by_the_density_that_they_report() {
     let check = SUITE.check("guided directions");
@@ -69,7 +70,7 @@ fn guided_directions_are_distributed_by_the_density_that_they_report() {
             let weight = lobe(guided.direction.map(f64::from)) / reported;
             Some(Sampled { point: guided.direction, weight, pdf: reported })
         };
-        // Cells of the histogram, so that the density is constant in the cells of the test; at their rims f32 rounds across.
+        // The density is constant in these cells; at their rims f32 rounds across.
         SamplingCheck::on(Sphere).cells(32, 32).outliers(1e-3).run(check, sample, pdf, lobe)
     };
     run(check, &|pdf, _| pdf).expect_pass();
@@ -78,7 +79,8 @@ fn guided_directions_are_distributed_by_the_density_that_they_report() {
     run(SUITE.twin("the original density alone"), &|_, _| uniform).expect_reject();
 }
 
-/// A light above the unit square, guided to where importons are, and what it emits is deposited by importance: flux arrives in full.
+/// A light above the unit square, guided to where importons are, and what it emits is deposited by importance: flux
+/// arrives in full.
 #[test]
 fn guidance_and_deposition_go_together() {
     const HEIGHT: f32 = 0.5;

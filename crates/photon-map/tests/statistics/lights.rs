@@ -116,7 +116,8 @@ fn others_are_drawn_with_the_probabilities_that_are_reported() {
     chi_square_counts(SUITE.twin("equal probabilities"), &counts, &uniform).expect_reject();
 }
 
-/// A corridor of 100 rooms with a light each; a light also reaches a little into the next rooms. Few primary photons find the contributing lights.
+/// A corridor of 100 rooms with a light each; a light also reaches a little into the next rooms. Few primary photons
+/// find the contributing lights.
 #[test]
 fn selection_from_primary_photons_is_unbiased_from_end_to_end() {
     const ROOMS: u32 = 100;
