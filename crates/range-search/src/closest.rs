@@ -19,8 +19,15 @@ impl<'a> Closest<'a> {
     /// For the nearest `k > 0` up to a squared radius.
     pub(crate) fn new(k: usize, radius_squared: f32, found: &'a mut Vec<Neighbor>) -> Self {
         found.clear();
-        let full = k.saturating_mul(4).max(256);
+        let full = k.saturating_mul(2).max(64);
         Self { k, full, last: Neighbor::new(u32::MAX, radius_squared), found }
+    }
+
+    /// What is farther away than this is not wanted; what is as far may be.
+    #[cfg(feature = "obvhs")]
+    #[inline(always)]
+    pub(crate) fn bound(&self) -> f32 {
+        self.last.distance_squared()
     }
 
     #[inline(always)]
@@ -49,10 +56,7 @@ impl<'a> Closest<'a> {
     }
 
     /// Leaves the nearest `k`, sorted.
-    pub(crate) fn finish(mut self) {
-        if self.found.len() > 2 * self.k {
-            self.shrink();
-        }
+    pub(crate) fn finish(self) {
         self.found.sort_unstable();
         self.found.truncate(self.k);
     }

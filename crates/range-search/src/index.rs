@@ -30,7 +30,7 @@ use crate::neighbor::Neighbor;
 /// 2. The order of visits depends on nothing but index and query. Each index documents it; indices differ.
 /// 3. [`k_nearest`](Self::k_nearest) finds the first `k` of these points in the order of [`Neighbor`]: by squared distance, then by id.
 ///
-/// `check_index` tests them on anybody's implementation.
+/// [`check_index`](crate::check::check_index) tests them on anybody's implementation.
 pub trait RangeIndex {
     /// Number of points that can be found. At most `u32::MAX`.
     fn len(&self) -> usize;
