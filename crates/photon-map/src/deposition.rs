@@ -66,9 +66,42 @@ pub trait DepositionExt: Deposition {
         let p = sanitised(self.probability(photon.position, photon.wi));
         (u < p).then(|| if p < 1.0 { photon.scaled(1.0 / p) } else { photon })
     }
+
+    /// Both decide, by one number: the probability is the product. Unbiased if both are.
+    ///
+    /// ```
+    /// use photon_map::{Deposition, DepositionExt};
+    /// let half = |_: [f32; 3], _: [f32; 3]| 0.5;
+    /// let from_above = |_: [f32; 3], wi: [f32; 3]| if wi[2] > 0.0 { 1.0 } else { 0.1 };
+    /// assert_eq!(half.and(from_above).probability([0.0; 3], [0.0, 0.0, 1.0]), 0.5);
+    /// ```
+    fn and<D: Deposition>(self, other: D) -> Both<Self, D>
+    where
+        Self: Sized,
+    {
+        Both { first: self, second: other }
+    }
 }
 
 impl<D: Deposition + ?Sized> DepositionExt for D {}
+
+/// Two rules together, see [`DepositionExt::and`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Both<A, B> {
+    first: A,
+    second: B,
+}
+
+impl<A: Deposition, B: Deposition> Deposition for Both<A, B> {
+    #[inline]
+    fn probability(&self, position: [f32; 3], wi: [f32; 3]) -> f64 {
+        // The second is not asked where the first says never.
+        match sanitised(self.first.probability(position, wi)) {
+            0.0 => 0.0,
+            p => p * sanitised(self.second.probability(position, wi)),
+        }
+    }
+}
 
 /// The laws of [`Deposition`] applied.
 #[inline]
@@ -167,6 +200,8 @@ mod tests {
             assert!((expected_flux(&move |_: [f32; 3], _: [f32; 3]| p) - 3.0).abs() < 1e-13, "{p}");
         }
         assert_eq!(expected_flux(&KeepAll), 3.0);
+        let (half, quarter) = (|_: [f32; 3], _: [f32; 3]| 0.5, |_: [f32; 3], _: [f32; 3]| 0.25);
+        assert!((expected_flux(&half.and(quarter).and(KeepAll)) - 3.0).abs() < 1e-13);
     }
 
     #[test]

@@ -35,14 +35,21 @@ impl PackedDirection {
     /// The direction, of unit length.
     #[inline]
     pub(crate) fn unpack(self) -> [f32; 3] {
+        let [x, y, z] = self.unnormalised();
+        let scale = 1.0 / (x * x + y * y + z * z).sqrt();
+        [x * scale, y * scale, z * scale]
+    }
+
+    /// The direction, of a length between 0.57 and 1: on the octahedron.
+    #[inline]
+    pub(crate) fn unnormalised(self) -> [f32; 3] {
         let decode = |code: u32| (code as i32 - 32768) as f32 / HALF;
         let (mut x, mut y) = (decode(self.0 & 0xffff), decode(self.0 >> 16));
         let z = 1.0 - x.abs() - y.abs();
         let fold = (-z).max(0.0);
         x -= fold.copysign(x);
         y -= fold.copysign(y);
-        let scale = 1.0 / (x * x + y * y + z * z).sqrt();
-        [x * scale, y * scale, z * scale]
+        [x, y, z]
     }
 }
 

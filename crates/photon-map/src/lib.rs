@@ -21,7 +21,7 @@ mod vector;
 
 pub use caustics::{CausticRule, CausticRuleError, LastBounce};
 pub use density::{DensityEstimation, Estimate, Gather, GatherError, GatherPoint, MapError, PhotonMap, Scratch};
-pub use deposition::{Bound, BoundError, Deposition, DepositionExt, KeepAll};
+pub use deposition::{Both, Bound, BoundError, Deposition, DepositionExt, KeepAll};
 pub use flux::Flux;
 pub use guidance::{DirectionalHistogram, GuidanceError, Guide, GuidedDirection};
 pub use importance::{AnyDirection, DirectionWeight, ImportanceMap, ImportanceScale, ImportonDeposition, ScaleError};

@@ -141,6 +141,12 @@ impl<F: Flux> PackedPhoton<F> {
         self.wi.unpack()
     }
 
+    /// Where it came from, not of unit length.
+    #[inline]
+    pub(crate) fn wi_unnormalised(&self) -> [f32; 3] {
+        self.wi.unnormalised()
+    }
+
     /// What it carries.
     #[inline]
     pub const fn flux(&self) -> F {

@@ -135,6 +135,18 @@ fn the_normal_test_keeps_the_other_side_out() {
     assert_eq!(count(GatherPoint::on([0.0; 3], [f32::NAN; 3])), 3);
 }
 
+#[cfg(feature = "rayon")]
+#[test]
+fn all_threads_build_the_same_map() {
+    let photons = || disk(&TILTED, [1.0, 2.0, 3.0], 100_000);
+    let [one, all] = [PhotonMap::build(photons(), 0.05).unwrap(), PhotonMap::par_build(photons(), 0.05).unwrap()];
+    assert!(one.photons() == all.photons() && one.paths() == all.paths());
+    let estimation = DensityEstimation { gather: Gather::within(0.1).unwrap(), kernel: Kernel::CONE };
+    let irradiance =
+        |map: &PhotonMap<f64>| map.irradiance(&estimation, &GatherPoint::at([1.0, 2.0, 3.0]), &mut Scratch::default());
+    assert_eq!(irradiance(&one), irradiance(&all));
+}
+
 #[test]
 fn every_index_gives_the_same_estimate() {
     let photons = || disk(&TILTED, [1.0, 2.0, 3.0], 3000);

@@ -2,6 +2,8 @@
 
 use range_search::{Neighbor, RangeIndex};
 
+use crate::Kernel;
+
 /// The radius of the nearest photons is at least this share of the largest one.
 const LEAST_RADIUS: f32 = 1.0 / 4096.0;
 
@@ -107,23 +109,19 @@ impl Gather {
         self.count
     }
 
-    /// Calls `f` with the squared radius, and with id and squared distance of all points at most as far; returns the
-    /// squared radius.
-    ///
-    /// Squared, because the root of the `k`-th photon's squared distance need not square to it, and that photon must
-    /// not count.
+    /// Calls `f` with the disk, and with id and squared distance of all points at most as far as its rim; returns the disk.
     #[inline]
     pub(crate) fn for_each<I: RangeIndex>(
         &self,
         index: &I,
         centre: [f32; 3],
         scratch: &mut Scratch,
-        mut f: impl FnMut(f32, usize, f32),
-    ) -> f32 {
+        mut f: impl FnMut(Disk, usize, f32),
+    ) -> Disk {
         let mut within = |radius: f32| {
-            let radius_squared = radius * radius;
-            index.for_each_within(centre, radius, |id, distance_squared| f(radius_squared, id, distance_squared));
-            radius_squared
+            let disk = Disk::new(radius * radius);
+            index.for_each_within(centre, radius, |id, distance_squared| f(disk, id, distance_squared));
+            disk
         };
         let Some(count) = self.count else { return within(self.max_radius) };
         index.k_nearest(centre, count, self.max_radius, &mut scratch.found);
@@ -136,8 +134,36 @@ impl Gather {
             // There may be more than `count` of them.
             return within(least);
         }
-        scratch.found.iter().for_each(|neighbour| f(farthest, neighbour.id(), neighbour.distance_squared()));
-        farthest
+        let disk = Disk::new(farthest);
+        scratch.found.iter().for_each(|neighbour| f(disk, neighbour.id(), neighbour.distance_squared()));
+        disk
+    }
+}
+
+/// A radius that was found.
+///
+/// Squared, because the root of the `k`-th photon's squared distance need not square to it, and that photon must not count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Disk {
+    pub(crate) radius_squared: f32,
+    inverse: f64,
+}
+
+impl Disk {
+    fn new(radius_squared: f32) -> Self {
+        Self { radius_squared, inverse: 1.0 / f64::from(radius_squared) }
+    }
+
+    /// A photon's weight per area, without the factor that all photons share: see [`per_area`](Self::per_area).
+    #[inline]
+    pub(crate) fn weight(&self, kernel: &Kernel, distance_squared: f32) -> f64 {
+        // Compared before it is divided, since the product may round to one on either side of it.
+        if distance_squared < self.radius_squared { kernel.at(f64::from(distance_squared) * self.inverse) } else { 0.0 }
+    }
+
+    /// One over the squared radius.
+    pub(crate) fn per_area(&self) -> f64 {
+        self.inverse
     }
 }
 
@@ -149,8 +175,8 @@ mod tests {
     fn radius(gather: Gather, points: &[[f32; 3]]) -> (f32, usize) {
         let index = BruteForce::build(points, |p| *p).unwrap();
         let mut visited = 0;
-        let squared = gather.for_each(&index, [0.0; 3], &mut Scratch::default(), |_, _, _| visited += 1);
-        (squared.sqrt(), visited)
+        let disk = gather.for_each(&index, [0.0; 3], &mut Scratch::default(), |_, _, _| visited += 1);
+        (disk.radius_squared.sqrt(), visited)
     }
 
     #[test]

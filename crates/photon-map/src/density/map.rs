@@ -96,13 +96,31 @@ impl<F: Flux> PhotonMap<F> {
     /// # Errors
     /// [`MapError`] if no paths were counted, or the radius is not positive and finite.
     pub fn build(photons: Photons<F>, radius: f32) -> Result<Self, MapError> {
-        let grid = |photons: &[_]| HashGrid::build(photons, PackedPhoton::position, radius).map_err(MapError::Index);
+        Self::sorted(photons, |photons| HashGrid::build(photons, PackedPhoton::position, radius))
+    }
+
+    /// The same map, built on all threads of rayon's pool.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    #[cfg(feature = "rayon")]
+    pub fn par_build(photons: Photons<F>, radius: f32) -> Result<Self, MapError>
+    where
+        F: Sync,
+    {
+        Self::sorted(photons, |photons| HashGrid::par_build(photons, PackedPhoton::position, radius))
+    }
+
+    fn sorted(
+        photons: Photons<F>,
+        grid: impl Fn(&[PackedPhoton<F>]) -> Result<HashGrid, BuildError>,
+    ) -> Result<Self, MapError> {
         let (unsorted, paths) = parts(photons)?;
-        let order = grid(&unsorted)?;
+        let order = grid(&unsorted).map_err(MapError::Index)?;
         // In the order of the grid photons of a cell lie in a row; built again, the grid leaves them where they are.
         let photons = order.reorder(&unsorted);
         drop((unsorted, order));
-        let index = grid(&photons)?;
+        let index = grid(&photons).map_err(MapError::Index)?;
         Ok(Self { photons, index, paths })
     }
 
@@ -168,17 +186,17 @@ impl<F: Flux, I: RangeIndex> PhotonMap<F, I> {
         mut contribution: impl FnMut(&PackedPhoton<F>) -> T,
     ) -> Estimate<T> {
         let (mut sum, mut count) = (T::ZERO, 0);
-        let r2 = estimation.gather.for_each(&self.index, at.position(), scratch, |r2, id, distance_squared| {
+        let disk = estimation.gather.for_each(&self.index, at.position(), scratch, |disk, id, distance_squared| {
             let photon = &self.photons[id];
-            let Some(d2) = at.distance_squared(photon.position(), || photon.wi(), distance_squared) else { return };
-            let weight = estimation.kernel.at(f64::from(d2) / f64::from(r2));
+            let Some(d2) = at.distance_squared(photon, distance_squared) else { return };
+            let weight = disk.weight(&estimation.kernel, d2);
             if weight > 0.0 {
                 count += 1;
                 sum = sum.add(contribution(photon).scale(weight));
             }
         });
-        let scale = 1.0 / (f64::from(r2) * self.paths as f64);
-        Estimate { value: sum.scale(scale), photons: count, radius: r2.sqrt() }
+        let value = sum.scale(disk.per_area() / self.paths as f64);
+        Estimate { value, photons: count, radius: disk.radius_squared.sqrt() }
     }
 
     /// Number and sum of the photons that count at a point, unweighted: what
@@ -193,10 +211,10 @@ impl<F: Flux, I: RangeIndex> PhotonMap<F, I> {
     ) -> (u64, T) {
         let (mut sum, mut count) = (T::ZERO, 0);
         let Ok(gather) = Gather::within(radius) else { return (count, sum) };
-        gather.for_each(&self.index, at.position(), &mut Scratch::default(), |r2, id, distance_squared| {
+        gather.for_each(&self.index, at.position(), &mut Scratch::default(), |disk, id, distance_squared| {
             let photon = &self.photons[id];
-            let counted = at.distance_squared(photon.position(), || photon.wi(), distance_squared);
-            if counted.is_some_and(|d2| d2 < r2) {
+            let counted = at.distance_squared(photon, distance_squared);
+            if counted.is_some_and(|d2| d2 < disk.radius_squared) {
                 count += 1;
                 sum = sum.add(contribution(photon));
             }

@@ -1,6 +1,7 @@
 //! Where a density is estimated.
 
 use crate::vector::{dot, normalise, subtract};
+use crate::{Flux, PackedPhoton};
 
 /// A point on a surface where density is estimated, with what keeps photons of other surfaces out.
 ///
@@ -91,17 +92,18 @@ impl GatherPoint {
 
     /// The squared distance of a photon in the compressed metric; `None` if it does not count.
     #[inline]
-    pub(crate) fn distance_squared(
-        &self,
-        position: [f32; 3],
-        wi: impl FnOnce() -> [f32; 3],
-        distance_squared: f32,
-    ) -> Option<f32> {
+    pub(crate) fn distance_squared<F: Flux>(&self, photon: &PackedPhoton<F>, distance_squared: f32) -> Option<f32> {
         let Some(normal) = self.normal else { return Some(distance_squared) };
-        if self.least_cosine > -1.0 && dot(wi(), normal) <= self.least_cosine {
-            return None;
+        let c = self.least_cosine;
+        if c > -1.0 {
+            // Most often only the sign of the cosine matters: no need to normalise.
+            let wi = photon.wi_unnormalised();
+            let bound = if c == 0.0 { 0.0 } else { c * dot(wi, wi).sqrt() };
+            if dot(wi, normal) <= bound {
+                return None;
+            }
         }
-        let height = dot(subtract(position, self.position), normal);
+        let height = dot(subtract(photon.position(), self.position), normal);
         Some(distance_squared + self.flattening * height * height)
     }
 }

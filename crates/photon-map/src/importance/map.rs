@@ -56,14 +56,17 @@ impl<I: RangeIndex> ImportanceMap<I> {
     pub fn directions(&self, at: &GatherPoint, histogram: &mut DirectionalHistogram) {
         histogram.clear();
         let (gather, kernel) = (self.estimation.gather, self.estimation.kernel);
-        gather.for_each(self.importons.index(), at.position(), &mut Scratch::default(), |r2, id, distance_squared| {
-            let importon = &self.importons.photons()[id];
-            let counted = at.distance_squared(importon.position(), || importon.wi(), distance_squared);
-            if let Some(d2) = counted {
-                let weight = kernel.at(f64::from(d2) / f64::from(r2));
-                histogram.add(importon.wi(), importon.flux() * weight as f32);
-            }
-        });
+        gather.for_each(
+            self.importons.index(),
+            at.position(),
+            &mut Scratch::default(),
+            |disk, id, distance_squared| {
+                let importon = &self.importons.photons()[id];
+                if let Some(d2) = at.distance_squared(importon, distance_squared) {
+                    histogram.add(importon.wi(), importon.flux() * disk.weight(&kernel, d2) as f32);
+                }
+            },
+        );
     }
 
     /// The importons.
