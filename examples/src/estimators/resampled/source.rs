@@ -100,14 +100,28 @@ where
     /// A point on, or a direction to, an emitter.
     #[inline]
     fn sample_emitter(&self, id: EmitterId, u: [f32; 2]) -> Option<LightCandidate<S::Spectrum>> {
-        let light = if self.environment == EnvironmentSampling::Uniform && self.scene.environment() == Some(id) {
-            let wi = sample_uniform_sphere(u).into();
-            let radiance = self.scene.environment_radiance(wi);
-            DirectSample { wi, at: None, radiance, pdf_solid_angle: UNIFORM, is_delta: false }
-        } else {
-            self.scene.emitters()[id.index()].sample_direct(self.vertex.point().position, u)?
-        };
+        if self.environment == EnvironmentSampling::Uniform && self.scene.environment() == Some(id) {
+            return Some(self.sample_sphere(id, u));
+        }
+        let light = self.scene.emitters()[id.index()].sample_direct(self.vertex.point().position, u)?;
         Some(LightCandidate { emitter: id, light, is_seen: false, scattered: None })
+    }
+
+    /// A direction to the environment, uniform over the sphere. Its radiance is looked up only where the vertex scatters it: not for the half of the
+    /// directions that are below an opaque surface.
+    #[inline]
+    fn sample_sphere(&self, id: EmitterId, u: [f32; 2]) -> LightCandidate<S::Spectrum> {
+        let wi = sample_uniform_sphere(u).into();
+        let scattered = self.evaluates.then(|| self.vertex.eval(wi, TransportMode::Radiance));
+        let is_lost = scattered.is_some_and(|scattered| scattered.is_black());
+        let radiance = if is_lost { S::Spectrum::ZERO } else { self.scene.environment_radiance(wi) };
+        let light = DirectSample { wi, at: None, radiance, pdf_solid_angle: UNIFORM, is_delta: false };
+        LightCandidate {
+            emitter: id,
+            light,
+            is_seen: false,
+            scattered: scattered.map(|scattered| scattered * radiance),
+        }
     }
 
     /// What a scattered ray hits.

@@ -31,10 +31,8 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         (Setup::builtin(context, "blob", size)?, papers_proposals()),
         (Setup::builtin(context, "lantern-field", size)?, ResamplingSettings::default()),
     ];
-    if !context.quick {
-        let asset = Setup::asset(context, "many-lights/scene.scn", size)?;
-        setups.extend(asset.map(|setup| (setup, ResamplingSettings::default())));
-    }
+    let asset = Setup::asset(context, "many-lights/scene.scn", size)?;
+    setups.extend(asset.map(|setup| (setup, ResamplingSettings::default())));
     for (setup, proposals) in &setups {
         let settings = direct_light(setup, with_budget(&strong_proposals(), 16.0, 4.0));
         let samples = context.effort(256, 1024);
