@@ -10,6 +10,7 @@ mod form;
 mod furnace;
 mod furniture;
 mod interior;
+mod lantern_field;
 mod noise;
 mod office;
 mod plane;
@@ -29,6 +30,7 @@ pub use cornell_box::cornell_box;
 pub use door_slit::door_slit;
 pub use furnace::{furnace, furnace_box};
 pub use interior::interior;
+pub use lantern_field::lantern_field;
 pub use office::office;
 pub use plane::{plane_light, plane_point};
 pub use rooms::rooms;
@@ -105,6 +107,11 @@ impl Builtin {
             name: "caustic-room",
             about: "glass and metal on a table, lit via a bright wall only",
             make: caustic_room,
+        },
+        Self {
+            name: "lantern-field",
+            about: "a thousand lamps of very different power over a field with walls and pillars",
+            make: lantern_field,
         },
         Self { name: "glass-ball", about: "caustics of a glass ball and a golden ring on a floor", make: glass_ball },
     ];
