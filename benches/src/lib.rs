@@ -6,9 +6,11 @@
 
 mod brute_force;
 mod inputs;
+mod surface_points;
 
 pub use brute_force::brute_force;
 pub use inputs::{blob, camera_rays, directions, segments, sized, triangles_of};
+pub use surface_points::surface_points;
 
 // The examples in the pages that belong to no crate are compiled and run as this package's doctests.
 #[cfg(doctest)]
@@ -18,6 +20,10 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/scene-core.md")]
 struct SceneCorePage;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/range-search.md")]
+struct RangeSearchPage;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/architecture.md")]

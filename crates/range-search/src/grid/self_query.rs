@@ -5,6 +5,7 @@ use crate::ball::Ball;
 use crate::lanes::Candidates;
 
 /// Slots that one thread works on at a time.
+#[cfg(feature = "rayon")]
 const CHUNK: usize = 1 << 12;
 /// Queries of a cell that share their candidates, at most.
 const MOST_QUERIES: usize = 64;
