@@ -2,7 +2,6 @@
 
 mod build;
 
-use core::convert::Infallible;
 use core::ops::{ControlFlow, Range};
 
 use crate::ball::{Ball, distance_squared};
@@ -140,7 +139,7 @@ impl RangeIndex for Bvh {
     /// Visits the nearer of two nodes first, and none farther away than the last of the nearest so far.
     fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
         out.clear();
-        let (Some(mut ball), Some(root)) = (Ball::new(center, max_radius), self.nodes.first()) else { return };
+        let (Some(ball), Some(root)) = (Ball::new(center, max_radius), self.nodes.first()) else { return };
         if k == 0 {
             return;
         }
@@ -150,17 +149,17 @@ impl RangeIndex for Bvh {
         let mut len = 1;
         while len > 0 {
             len -= 1;
-            let (node, distance_squared) = waiting[len];
-            ball.radius_squared = closest.bound();
-            if distance_squared > ball.radius_squared {
+            let (node, nearest_in_box) = waiting[len];
+            if nearest_in_box > closest.bound() {
                 continue;
             }
             let node: &Node = &self.nodes[node];
             if node.blocks > 0 {
-                let ControlFlow::Continue(()) = self.points.scan(&ball, core::iter::once(self.slots(node)), |id, d| {
-                    closest.push(Neighbor::new(id as u32, d));
-                    ControlFlow::<Infallible>::Continue(())
-                });
+                // The bound changes from leaf to leaf, so that there is nothing to test together.
+                for slot in self.slots(node) {
+                    let distance_squared = distance_squared(self.points.position(slot), center);
+                    closest.push(Neighbor::new(self.points.id(slot), distance_squared));
+                }
                 continue;
             }
             let children = [0, 1].map(|child| node.first as usize + child);
