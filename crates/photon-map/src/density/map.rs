@@ -42,6 +42,9 @@ pub struct Estimate<T> {
 /// the variance is at most [`Kernel::roughness`]` / r^2` times the sum of `(flux / N)^2` per area. **Consistent** if
 /// the radius shrinks slowly: [`ProgressiveRadius`](crate::ProgressiveRadius). Exact on uniform sheets.
 ///
+/// **Round-off.** Photons of a query are summed up in their own type: for `f32` a relative error of 6e-8 times their
+/// number at worst.
+///
 /// **Cost.** A query tests the photons around the point. Building sorts photons by place once, so that queries read
 /// them in a row.
 ///

@@ -19,7 +19,28 @@ use crate::{DensityEstimation, DirectionalHistogram, GatherPoint, PhotonMap, Scr
 /// right. Importance shines through thin walls, for photons that are asked about have no normal; P2 calls it energy
 /// bleeding.
 ///
+/// **Cost.** A density estimate for each question.
+///
 /// **Source.** P2, section 2.3; I. Peter and G. Pietrek 1998.
+///
+/// # Example
+/// ```
+/// use photon_map::{
+///     DensityEstimation, DirectionalHistogram, Gather, GatherPoint, ImportanceMap, Kernel, Photon, PhotonMap, Photons,
+/// };
+/// let mut importons = Photons::new();
+/// importons.store(Photon::new([0.0; 3], [0.6, 0.0, 0.8], 3.0));
+/// importons.add_paths(1);
+/// let estimation = DensityEstimation { gather: Gather::within(1.0)?, kernel: Kernel::Constant };
+/// let importance = ImportanceMap::new(PhotonMap::build(importons, 1.0)?, estimation);
+/// assert!((importance.at([0.5, 0.0, 0.0]) - 3.0 / std::f64::consts::PI).abs() < 1e-6);
+/// assert_eq!(importance.at([2.0, 0.0, 0.0]), 0.0);
+///
+/// let mut histogram = DirectionalHistogram::new(8, 8)?;
+/// importance.directions(&GatherPoint::at([0.5, 0.0, 0.0]), &mut histogram);
+/// assert!(histogram.pdf_solid_angle([0.6, 0.01, 0.8]) > 5.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct ImportanceMap<I = HashGrid> {
     importons: PhotonMap<f32, I>,

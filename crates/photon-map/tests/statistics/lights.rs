@@ -67,6 +67,18 @@ fn the_mean_is_the_sum_over_all_lights() {
             }
         }
     }
+    // What it is for: as many rays to lights that are drawn from all of them.
+    let blind = LightSelection::new(table(), 1, 12, Allocation::Proportional).unwrap();
+    let nothing = ContributingLights::new(LIGHTS as usize);
+    let (mut uniforms, mut rays, mut by_chance) = (Uniforms::named("blind"), ShadowRays::default(), Moments::new());
+    for _ in 0..20_000 {
+        blind.select_by_weight(&nothing, uniforms.array(), &mut rays);
+        by_chance.push(rays.as_slice().iter().map(|shadow| shadow.weight * ray(&mut uniforms, shadow.light)).sum());
+    }
+    let selection = LightSelection::new(table(), 8, 4, Allocation::BrightestFirst).unwrap();
+    let selected = estimates(Uniforms::named("selected"), &selection, false);
+    assert!(selected.variance() < 0.5 * by_chance.variance(), "{} {}", selected.variance(), by_chance.variance());
+
     let none = LightSelection::new(table(), 64, 0, Allocation::BrightestFirst).unwrap();
     mean_is(SUITE.twin("no ray to the others"), &estimates(Uniforms::named("none"), &none, false), truth)
         .expect_reject();
