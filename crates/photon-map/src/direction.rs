@@ -1,7 +1,5 @@
 //! Directions in 32 bits.
 
-use crate::vector::normalise;
-
 /// Largest code of a coordinate; an even number of steps, so that the axes are exact.
 const HALF: f32 = 32767.0;
 
@@ -22,13 +20,19 @@ pub(crate) struct PackedDirection(u32);
 impl PackedDirection {
     /// Packs a direction of any length; `None` for zero, infinite and NaN vectors.
     pub(crate) fn pack(direction: [f32; 3]) -> Option<Self> {
-        let [x, y, z] = normalise(direction)?;
-        let scale = 1.0 / (x.abs() + y.abs() + z.abs());
-        let (mut u, mut v) = (x * scale, y * scale);
+        // In f64, so that no length overflows or vanishes.
+        let [x, y, z] = direction.map(f64::from);
+        let length = x.abs() + y.abs() + z.abs();
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        let scale = 1.0 / length;
+        let (mut u, mut v) = ((x * scale) as f32, (y * scale) as f32);
         if z < 0.0 {
             (u, v) = ((1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v));
         }
-        let code = |t: f32| ((t * HALF).round() as i32 + 32768) as u32;
+        // Rounds to the nearest by truncating what is positive, without a call of `round`.
+        let code = |t: f32| (t * HALF + 32768.5) as u32;
         Some(Self(code(u) | code(v) << 16))
     }
 

@@ -70,18 +70,29 @@ impl<G: Fn([f32; 3], [f32; 3]) -> f64> DirectionWeight for G {
 /// let deposition = ImportonDeposition::new(&importance, scale, Bound::Floor(0.01))?;
 ///
 /// let photon = |x| Photon::new([x, 0.0, 0.0], [0.0, 0.0, 1.0], 2.0_f32);
+/// let thinned = deposition.and(|_: [f32; 3], _: [f32; 3]| 0.5); // a copy
 /// assert_eq!(deposition.decide(photon(0.0), 0.9), Some(photon(0.0)));
+/// assert_eq!(thinned.decide(photon(0.0), 0.4).map(|p| p.flux), Some(4.0));
 /// assert_eq!(deposition.decide(photon(5.0), 0.9), None);
 /// assert_eq!(deposition.decide(photon(5.0), 0.001).map(|p| p.flux), Some(200.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct ImportonDeposition<'a, I = HashGrid, G = AnyDirection> {
     importance: &'a ImportanceMap<I>,
     scale: ImportanceScale,
     bound: Bound,
     direction: G,
 }
+
+// Not derived: the index behind the reference need not be `Clone`.
+impl<I, G: Clone> Clone for ImportonDeposition<'_, I, G> {
+    fn clone(&self) -> Self {
+        Self { direction: self.direction.clone(), ..*self }
+    }
+}
+
+impl<I, G: Copy> Copy for ImportonDeposition<'_, I, G> {}
 
 impl<'a, I: RangeIndex> ImportonDeposition<'a, I> {
     /// The probability depends on the place.
