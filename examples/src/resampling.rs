@@ -76,14 +76,17 @@ pub struct ResamplingSettings {
     #[arg(long, default_value_t = 8.0, value_parser = parse_count)]
     pub bsdf_candidates: f32,
     /// Rounds in which pixels take over samples of their neighbours, with `restir-direct`.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(0..=8))]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=8))]
     pub reuse_rounds: u32,
     /// Neighbours per round.
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub reuse_neighbours: u32,
     /// How far away neighbours may be, in pixels.
     #[arg(long, default_value_t = 10.0, value_parser = parse_count)]
     pub reuse_radius: f32,
+    /// Choose among the samples of neighbours without regard to visibility: no shadow ray for each of them, more noise where something occludes.
+    #[arg(long)]
+    pub reuse_unshadowed: bool,
 }
 
 impl Default for ResamplingSettings {
@@ -98,9 +101,10 @@ impl Default for ResamplingSettings {
             environment_candidates: EnvironmentSampling::Importance,
             target: TargetName::Unshadowed,
             bsdf_candidates: 8.0,
-            reuse_rounds: 2,
-            reuse_neighbours: 5,
+            reuse_rounds: 3,
+            reuse_neighbours: 3,
             reuse_radius: 10.0,
+            reuse_unshadowed: false,
         }
     }
 }
@@ -144,7 +148,7 @@ impl ResamplingSettings {
     /// Reuse between pixels.
     pub fn restir<'a>(&self, direct: ResampledDirect<'a, AnyChoice>) -> RestirDirect<'a, AnyChoice> {
         let (rounds, neighbours, radius) = (self.reuse_rounds, self.reuse_neighbours, self.reuse_radius);
-        RestirDirect { direct, rounds, neighbours, radius }
+        RestirDirect { direct, rounds, neighbours, radius, tests_visibility: !self.reuse_unshadowed }
     }
 
     /// The way to find direct light.

@@ -47,7 +47,7 @@ use crate::{Budget, Float};
 pub struct VarianceModel<const C: usize> {
     count: u64,
     unsupported: u64,
-    /// Sum of `g / p`.
+    /// Sum of `v g / p`.
     target: f64,
     components: [Sums; C],
 }
@@ -58,13 +58,15 @@ const HUGE: f64 = 1e140;
 /// Sums of one component of the integrand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sums {
-    /// `f / p`.
+    /// `v f / p`, with `v = p / q` for candidates of density `q`.
     ratio: f64,
-    /// `(f / p)^2`.
+    /// `(v f / p)^2`: the part that `e1` has to leave out.
     square: f64,
-    /// `f^2 / (g p)`.
+    /// `v (f / p)^2`.
+    square_ratio: f64,
+    /// `v f^2 / (g p)`.
     over_target: f64,
-    /// `(f / p)^2` of the candidates with `g > 0`: the part that `e2` has to leave out.
+    /// `(v f / p)^2` of the candidates with `g > 0`: the part that `e2` has to leave out.
     paired: f64,
 }
 
@@ -72,6 +74,7 @@ impl Sums {
     fn add(&mut self, other: &Self) {
         self.ratio += other.ratio;
         self.square += other.square;
+        self.square_ratio += other.square_ratio;
         self.over_target += other.over_target;
         self.paired += other.paired;
     }
@@ -114,28 +117,53 @@ impl<const C: usize> Default for VarianceModel<C> {
 impl<const C: usize> VarianceModel<C> {
     /// Without candidates.
     pub const fn new() -> Self {
-        const NONE: Sums = Sums { ratio: 0.0, square: 0.0, over_target: 0.0, paired: 0.0 };
+        const NONE: Sums = Sums { ratio: 0.0, square: 0.0, square_ratio: 0.0, over_target: 0.0, paired: 0.0 };
         Self { count: 0, unsupported: 0, target: 0.0, components: [NONE; C] }
     }
 
     /// Adds a candidate with its integrand `f`, target `g` and density `p`.
     pub fn add<F: Float>(&mut self, f: [F; C], g: F, p: F) {
+        self.add_drawn(f, g, p, p);
+    }
+
+    /// [`add`](Self::add) for a candidate that was drawn with density `drawn` instead of `p`: the model is that of candidates of density `p`
+    /// all the same. So the variance of a poor source can be known from the candidates of a good one, without waiting for its rare events.
+    ///
+    /// ```text
+    /// E_p[h] = E_q[h p/q]
+    /// ```
+    /// `drawn` has to be positive wherever `p` and `f` or `g` are.
+    ///
+    /// ```
+    /// use ris::VarianceModel;
+    /// // f = x^2, g = x, and p = 1 as above, but drawn with density 2x: e1 = 1/9, e2 = 1/8, e3 = 1/5.
+    /// let mut model = VarianceModel::<1>::new();
+    /// for k in 0..10_000 {
+    ///     let x = ((f64::from(k) + 0.5) / 10_000.0).sqrt();
+    ///     model.add_drawn([x * x], x, 1.0, 2.0 * x);
+    /// }
+    /// let [all] = model.expectations().unwrap();
+    /// assert!((all.e1 - 1.0 / 9.0).abs() < 1e-3 && (all.e2 - 0.125).abs() < 1e-3 && (all.e3 - 0.2).abs() < 1e-3);
+    /// ```
+    pub fn add_drawn<F: Float>(&mut self, f: [F; C], g: F, p: F, drawn: F) {
         self.count += 1;
-        let (g, p) = (g.weight_or_zero().to_f64(), p.weight_or_zero().to_f64());
+        let [g, p, drawn] = [g, p, drawn].map(|x| x.weight_or_zero().to_f64());
+        let weight = p / drawn;
         let f = f.map(Float::to_f64);
         let terms = f.map(|f| {
             let ratio = f / p;
-            let (over_target, paired) = if g > 0.0 { (ratio * (f / g), ratio * ratio) } else { (0.0, 0.0) };
-            Sums { ratio, square: ratio * ratio, over_target, paired }
+            let square = (weight * ratio) * (weight * ratio);
+            let (over_target, paired) = if g > 0.0 { (weight * ratio * (f / g), square) } else { (0.0, 0.0) };
+            Sums { ratio: weight * ratio, square, square_ratio: weight * ratio * ratio, over_target, paired }
         });
-        let finite = |sums: &Sums| sums.square < HUGE && sums.over_target < HUGE;
-        if p == 0.0 || g / p >= HUGE || !terms.iter().all(finite) {
+        let finite = |sums: &Sums| sums.square < HUGE && sums.square_ratio < HUGE && sums.over_target < HUGE;
+        if p == 0.0 || drawn == 0.0 || g / drawn >= HUGE || !terms.iter().all(finite) {
             return;
         }
         if g == 0.0 && f.iter().any(|&f| f != 0.0) {
             self.unsupported += 1;
         }
-        self.target += g / p;
+        self.target += g / drawn;
         for (sums, term) in self.components.iter_mut().zip(&terms) {
             sums.add(term);
         }
@@ -176,7 +204,7 @@ impl<const C: usize> VarianceModel<C> {
         Some(self.components.map(|sums| Expectations {
             e1: (sums.ratio * sums.ratio - sums.square) / pairs,
             e2: (sums.over_target * self.target - sums.paired) / pairs,
-            e3: sums.square / n,
+            e3: sums.square_ratio / n,
         }))
     }
 

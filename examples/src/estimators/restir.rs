@@ -23,12 +23,16 @@ use crate::render::{CameraPass, PassContext, PassCounts, TILE_SIZE};
 /// round r:   w_i = m_i(Y_i) g(Y_i) W_i   over the pixel and its neighbours,    W = 1/g(Y) * sum w_i
 /// L = L_e + f cos L_e V (Y) W
 /// ```
-/// **Symbols.** `m_i`: pairwise weights ([`ris::Pairwise`]); `g`: luminance of the unshadowed light, per area of the emitter.
+/// **Symbols.** `m_i`: pairwise weights ([`ris::Pairwise`]); `g`: luminance of the light, per area of the emitter, with its visibility or without.
+///
+/// **With visibility in the target** every score costs a shadow ray, but what is selected is the integrand itself: with `k` neighbours, `r` rounds
+/// average up to `(k + 1)^r` samples of as many pixels for `2 k r` rays. **Without**, candidates are shared and nothing else: what occlusion adds to
+/// the variance stays.
 ///
 /// **Unbiased**, for any neighbours: they are chosen by normals and distances, never by what they selected. All samples of a pass over the
 /// image depend on each other, those of different passes do not.
 ///
-/// **Cost.** Per pixel and sample: one closest hit, `M` candidates, `2 k` scores per round with `k` neighbours, one shadow ray.
+/// **Cost.** Per pixel and sample: one closest hit, `M` candidates, `2 k` scores per round, one shadow ray.
 ///
 /// **Source.** Bitterli, Wyman, Pharr, Shirley, Lefohn, Jarosz 2020 (*Spatiotemporal reservoir resampling for real-time ray tracing with dynamic direct
 /// lighting*); Lin et al. 2022 for the weights.
@@ -42,6 +46,8 @@ pub struct RestirDirect<'a, C> {
     pub neighbours: u32,
     /// How far away they are, in pixels.
     pub radius: f32,
+    /// Whether visibility is part of the target.
+    pub tests_visibility: bool,
 }
 
 /// What a pixel's ray found.
@@ -137,7 +143,8 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
             for ([x, y], pixel) in tile.pixels_mut() {
                 let number = y as usize * width + x as usize;
                 let eye = &eyes[number];
-                pixel.add(((eye.radiance + shade(&scene, eye, &picked[number])) * eye.weight).to_rgb());
+                let light = self.shade(&scene, eye, &picked[number]);
+                pixel.add(((eye.radiance + light) * eye.weight).to_rgb());
                 if let Some(hit) = eye.first_hit {
                     pixel.add_aov(hit.albedo, hit.normal, hit.depth);
                 }
@@ -200,7 +207,9 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
                 None => reservoir.skip(),
             }
         }
-        reusable(reservoir.finish(), scene, vertex)
+        let picked = reservoir.finish();
+        let seen = if self.tests_visibility { picked.kept_if(|y| y.is_visible(scene, vertex)) } else { picked };
+        reusable(seen, scene, vertex)
     }
 
     /// A pixel's sample after taking over those of its neighbours.
@@ -225,14 +234,31 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         let confidence = neighbours.iter().map(|&other| picked[other].confidence).sum();
 
         // Weigh each against the pixel's own sample.
-        let target = PointTarget(self.direct.target(scene, vertex));
+        let tests_visibility = self.tests_visibility;
+        let target = PointTarget { target: self.direct.target(scene, vertex), tests_visibility };
         let mut pairwise = Pairwise::new(picked[pixel], confidence);
         for other in neighbours {
             let Some(other_vertex) = &eyes[other].vertex else { continue };
-            let other_target = PointTarget(self.direct.target(scene, other_vertex));
+            let other_target = PointTarget { target: self.direct.target(scene, other_vertex), tests_visibility };
             pairwise.add(picked[other], &target, &other_target, numbers.next_1d());
         }
         pairwise.finish(numbers.next_1d())
+    }
+
+    /// The light of the selected sample.
+    fn shade<'s, S: Scene + Sync>(
+        &self,
+        scene: &Counting<'s, S>,
+        eye: &Eye<S::Vertex<'s>>,
+        picked: &Resampled<LightPoint>,
+    ) -> S::Spectrum {
+        let unlit = S::Spectrum::ZERO;
+        let (Some(vertex), Some(selected)) = (&eye.vertex, &picked.selected) else { return unlit };
+        let Some((candidate, measure)) = selected.sample.seen_from(scene, vertex) else { return unlit };
+        let value = candidate.value(vertex) * (measure * selected.contribution_weight);
+        // What was selected with visibility in the target has been seen from here.
+        let is_seen = self.tests_visibility || (!value.is_black() && candidate.is_visible(scene, vertex));
+        if is_seen { value } else { unlit }
     }
 }
 
@@ -242,19 +268,6 @@ fn neighbour(pixel: usize, [width, height]: [u32; 2], u: [f32; 2], radius: f32) 
     let (x, y) = ((pixel % width as usize) as i64 + dx, (pixel / width as usize) as i64 + dy);
     let is_inside = (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y);
     is_inside.then(|| y as usize * width as usize + x as usize)
-}
-
-/// The light of the selected sample.
-fn shade<'s, S: Scene + Sync>(
-    scene: &Counting<'s, S>,
-    eye: &Eye<S::Vertex<'s>>,
-    picked: &Resampled<LightPoint>,
-) -> S::Spectrum {
-    let unlit = S::Spectrum::ZERO;
-    let (Some(vertex), Some(selected)) = (&eye.vertex, &picked.selected) else { return unlit };
-    let Some((candidate, measure)) = selected.sample.seen_from(scene, vertex) else { return unlit };
-    let value = candidate.value(vertex) * (measure * selected.contribution_weight);
-    if !value.is_black() && candidate.is_visible(scene, vertex) { value } else { unlit }
 }
 
 impl<V: Vertex> Eye<V> {

@@ -68,7 +68,12 @@ impl LightPoint {
 
 /// The target of a vertex, in the measure of [`LightPoint`].
 #[derive(Clone, Copy, Debug)]
-pub struct PointTarget<'a, S, V>(pub LightTarget<'a, S, V>);
+pub struct PointTarget<'a, S, V> {
+    /// By solid angle.
+    pub target: LightTarget<'a, S, V>,
+    /// Whether what is occluded scores nothing: a shadow ray for each score that is positive otherwise.
+    pub tests_visibility: bool,
+}
 
 impl<S, V> Target<LightPoint, f32> for PointTarget<'_, S, V>
 where
@@ -76,8 +81,10 @@ where
     V: Vertex<Spectrum = S::Spectrum>,
 {
     fn score(&self, point: &LightPoint) -> f32 {
-        let LightTarget { scene, vertex, .. } = self.0;
-        point.seen_from(scene, vertex).map_or(0.0, |(candidate, measure)| self.0.score(&candidate) * measure)
+        let LightTarget { scene, vertex, .. } = self.target;
+        let Some((candidate, measure)) = point.seen_from(scene, vertex) else { return 0.0 };
+        let score = self.target.score(&candidate) * measure;
+        if self.tests_visibility && score > 0.0 && !candidate.is_visible(scene, vertex) { 0.0 } else { score }
     }
 }
 

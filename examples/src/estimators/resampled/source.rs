@@ -147,6 +147,16 @@ where
         Some(LightCandidate { emitter, light, is_seen: true, scattered: None })
     }
 
+    /// The density with which this source would have drawn a candidate of another one for the same vertex.
+    pub fn density_of_other(&self, candidate: &LightCandidate<S::Spectrum>) -> f32 {
+        let mut own = *candidate;
+        if !own.light.is_delta {
+            let at = own.light.at.as_ref().map(|(at, _)| at);
+            own.light.pdf_solid_angle = self.pdf_of_emitter(own.emitter, own.light.wi, at);
+        }
+        self.density(&own)
+    }
+
     /// Density by solid angle of `sample_emitter`.
     #[inline]
     fn pdf_of_emitter(&self, id: EmitterId, wi: glam::Vec3A, at: Option<&scene_core::SurfacePoint>) -> f32 {

@@ -2,15 +2,12 @@
 
 use std::time::Instant;
 
-use qmc_sampling::{Independent, Replications, Sampler, SamplerFamily};
-use rayon::prelude::*;
-use ris::{Budget, Objective, RatioMap, Source, Target, VarianceModel};
+use qmc_sampling::{Independent, Replications};
+use ris::{Budget, Objective};
 use scene_core::film::LayeredImage;
-use scene_core::{Scene, Sensor, Spectrum, Vertex};
 use serde_json::Value;
 
-use super::{at_centres, at_least, direct_light, papers_proposals, reported, with_budget};
-use crate::choices::AnyChoice;
+use super::{at_centres, at_least, direct_light, models, papers_proposals, predicted, reported, with_budget};
 use crate::estimators::{EnvironmentSampling, ResampledDirect, measure_cost};
 use crate::experiments::{Claim, Context, Ratio, Report, Row, Setup};
 use crate::program::Failure;
@@ -34,7 +31,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     let samplers = Independent::new(context.seed_of("models", 0));
     let direct = resampling.resampled(&setup.scene, &samplers, None)?;
     let cost = measure_cost(&setup.scene, &samplers, &direct)?;
-    let map = models(&setup, &direct, &samplers, context.effort(512, 4096));
+    let map = models(&setup, &direct, &direct, &samplers, context.effort(512, 4096));
     let optimal = map.candidates(POOL, cost, Objective::Weighted([1.0]));
     context.save_picture("figure-3-map", &picture(&optimal, size)?, 0.0)?;
 
@@ -114,51 +111,4 @@ fn picture(optimal: &[f64], [width, height]: [u32; 2]) -> Result<LayeredImage, F
     let mut image = LayeredImage::new(width, height)?;
     image.set_rgb(&optimal.iter().map(colour).collect::<Vec<_>>())?;
     Ok(image)
-}
-
-type Direct<'a> = ResampledDirect<'a, AnyChoice>;
-
-/// The model of each pixel, from `count` candidates at what the ray through its centre hits.
-fn models(setup: &Setup, direct: &Direct<'_>, samplers: &Independent, count: u32) -> RatioMap<1> {
-    let [width, height] = setup.scene.sensor().resolution();
-    let scene = &setup.scene;
-    let model = |pixel: u32| {
-        let mut model = VarianceModel::<1>::new();
-        let (x, y) = (pixel % width, pixel / width);
-        let ray = scene.sensor().sample_ray([x as f32 + 0.5, y as f32 + 0.5], [0.5; 2]).ray;
-        let Some(vertex) = scene.intersect(&ray).filter(Vertex::is_connectible) else { return model };
-        let (source, target) = (direct.source(scene, &vertex), direct.target(scene, &vertex));
-        let mut sampler = samplers.sampler(u64::from(pixel), 0);
-        for _ in 0..count {
-            match source.propose(&mut || sampler.next_1d()) {
-                Some(proposal) => {
-                    let candidate = proposal.sample;
-                    let value = candidate.value(&vertex);
-                    let is_seen = !value.is_black() && candidate.is_visible(scene, &vertex);
-                    let f = if is_seen { value.luminance() } else { 0.0 };
-                    model.add([f], target.score(&candidate), proposal.density);
-                }
-                None => model.add_nothing(),
-            }
-        }
-        model
-    };
-    let all: Vec<_> = (0..width * height).into_par_iter().map(model).collect();
-    let mut map = RatioMap::new(width as usize, height as usize);
-    for (pixel, model) in all.iter().enumerate() {
-        if let Some(place) = map.pixel_mut(pixel % width as usize, pixel / width as usize) {
-            *place = *model;
-        }
-    }
-    map
-}
-
-/// The variance of each pixel that its model predicts.
-fn predicted(map: &RatioMap<1>, budget: Budget) -> Vec<f64> {
-    let [width, height] = map.size();
-    let of_pixel = |pixel: usize| {
-        let [variance] = map.pooled(pixel % width, pixel / width, 0).predict(budget);
-        if variance.is_nan() { 0.0 } else { variance }
-    };
-    (0..width * height).map(of_pixel).collect()
 }

@@ -5,18 +5,21 @@ use serde_json::Value;
 use super::{Cost, at_least, direct_light, papers_proposals, strong_proposals, with_budget};
 use crate::experiments::{Claim, Context, Report, Row, Setup, ratio_of_means};
 use crate::program::{EstimatorName, Failure, RenderSettings};
-use crate::resampling::ResamplingSettings;
+use crate::resampling::{DirectName, ResamplingSettings};
 
 /// Numbers of candidates for resampling alone: reuse has to beat the best of them.
-const ALONE: [f32; 4] = [4.0, 16.0, 64.0, 256.0];
-/// Numbers of candidates with reuse.
-const WITH_REUSE: [f32; 3] = [4.0, 16.0, 32.0];
-/// Rounds, neighbours in each, and radius in pixels.
-const REUSE: (u32, u32, f32) = (2, 5, 8.0);
+const ALONE: [f32; 4] = [2.0, 8.0, 32.0, 128.0];
+/// Rounds of reuse with three neighbours each, number of candidates, and whether visibility is left out of the target.
+const WITH_REUSE: [(u32, f32, bool); 5] =
+    [(2, 8.0, true), (2, 8.0, false), (3, 2.0, false), (4, 8.0, false), (5, 8.0, false)];
+/// Radius in pixels.
+const RADIUS: f32 = 8.0;
 
 struct Candidate {
-    reuses: bool,
+    /// Rounds of reuse; zero is resampling alone.
+    rounds: u32,
     candidates: f32,
+    unshadowed: bool,
     settings: RenderSettings,
     cost: Cost,
 }
@@ -37,17 +40,17 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         let settings = direct_light(setup, with_budget(&strong_proposals(), 16.0, 4.0));
         let samples = context.effort(256, 1024);
         let reference = setup.render(&settings, samples, context.seed_of("reference", 0))?.film.develop(0);
-        let mut all: Vec<Candidate> = ALONE.iter().map(|&m| candidate(setup, proposals, false, m)).collect();
-        all.extend(WITH_REUSE.iter().map(|&m| candidate(setup, proposals, true, m)));
+        let alone = ALONE.iter().map(|&m| candidate(setup, proposals, (0, m, true)));
+        let mut all: Vec<Candidate> = alone.collect();
+        all.extend(WITH_REUSE.iter().map(|&with| candidate(setup, proposals, with)));
         for trial in 0..context.effort(8, 16) {
             for candidate in &mut all {
-                let what = format!("{}, {}, {}", setup.scene.name(), candidate.reuses, candidate.candidates);
+                let what = format!("{}, {}", setup.scene.name(), candidate.label());
                 let samples = context.effort(2, 8);
                 let rendering = setup.render(&candidate.settings, samples, context.seed_of(&what, trial))?;
                 candidate.cost.push(&rendering, &reference)?;
                 if trial == 0 {
-                    let name = if candidate.reuses { "with-reuse" } else { "alone" };
-                    let name = format!("{}-{name}-m{}", setup.scene.name(), candidate.candidates);
+                    let name = format!("{}-{}", setup.scene.name(), candidate.label());
                     context.save_picture(&name, &rendering.film.develop(0), 0.0)?;
                 }
             }
@@ -57,20 +60,31 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     Ok(report)
 }
 
-fn candidate(setup: &Setup, proposals: &ResamplingSettings, reuses: bool, candidates: f32) -> Candidate {
-    let (reuse_rounds, reuse_neighbours, reuse_radius) = REUSE;
+impl Candidate {
+    fn label(&self) -> String {
+        let visibility = if self.rounds > 0 && !self.unshadowed { "-visibility" } else { "" };
+        format!("rounds-{}-m{}{visibility}", self.rounds, self.candidates)
+    }
+}
+
+fn candidate(
+    setup: &Setup,
+    proposals: &ResamplingSettings,
+    (rounds, candidates, unshadowed): (u32, f32, bool),
+) -> Candidate {
     let resampling = ResamplingSettings {
-        reuse_rounds,
-        reuse_neighbours,
-        reuse_radius,
-        direct: crate::resampling::DirectName::Ris,
+        reuse_rounds: rounds,
+        reuse_neighbours: 3,
+        reuse_radius: RADIUS,
+        reuse_unshadowed: unshadowed,
+        direct: DirectName::Ris,
         ..with_budget(proposals, candidates, 1.0)
     };
     let mut settings = direct_light(setup, resampling);
-    if reuses {
+    if rounds > 0 {
         settings.estimator = EstimatorName::RestirDirect;
     }
-    Candidate { reuses, candidates, settings, cost: Cost::default() }
+    Candidate { rounds, candidates, unshadowed, settings, cost: Cost::default() }
 }
 
 fn report_on(setup: &Setup, all: &[Candidate], report: &mut Report) {
@@ -78,14 +92,16 @@ fn report_on(setup: &Setup, all: &[Candidate], report: &mut Report) {
     for candidate in all {
         let params = [
             ("M", Value::from(f64::from(candidate.candidates))),
+            ("rounds", candidate.rounds.into()),
+            ("visibility in the target", (!candidate.unshadowed).into()),
             ("error times seconds", candidate.cost.by_seconds.mean().into()),
             ("error times rays", candidate.cost.by_rays.mean().into()),
         ];
-        let estimator = if candidate.reuses { "restir-direct" } else { "direct" };
+        let estimator = if candidate.rounds > 0 { "restir-direct" } else { "direct" };
         report.rows.push(candidate.cost.trials.fill(Row::new(scene, estimator, params)));
     }
     let best = |reuses: bool| {
-        let some = all.iter().filter(move |candidate| candidate.reuses == reuses);
+        let some = all.iter().filter(move |candidate| (candidate.rounds > 0) == reuses);
         some.min_by(|a, b| a.cost.by_seconds.mean().total_cmp(&b.cost.by_seconds.mean()))
     };
     let (Some(alone), Some(with)) = (best(false), best(true)) else { return };
