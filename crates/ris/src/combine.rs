@@ -124,16 +124,18 @@ impl<X, F: Float> Pairwise<X, F> {
 
     /// The part of the pair's weight that is the neighbour's, at a sample with these scores.
     #[inline]
-    fn neighbour_part(&self, canonical_score: F, neighbour_score: F) -> F {
+    fn neighbour_part(&self, canonical_score: F, neighbour_score: F, ratio: F) -> F {
         let (neighbour, canonical) = (neighbour_score.weight_or_zero(), canonical_score.weight_or_zero());
+        let ratio = ratio.weight_or_zero();
+        let odds = if ratio > F::ZERO { (self.odds / ratio).at_most(F::MAX) } else { self.odds };
         // Where neither could select the sample any split does; it is never asked for then.
         if neighbour == F::ZERO {
             F::ZERO
-        } else if canonical == F::ZERO || self.odds == F::ZERO {
+        } else if canonical == F::ZERO || odds == F::ZERO {
             F::ONE
         } else {
             // The quotient of scores may overflow, and rightly gives zero then; their products with confidences must not.
-            F::ONE / (F::ONE + canonical / neighbour * self.odds)
+            F::ONE / (F::ONE + canonical / neighbour * odds)
         }
     }
 
@@ -146,18 +148,41 @@ impl<X, F: Float> Pairwise<X, F> {
         neighbour_target: &impl Target<X, F>,
         u: F,
     ) {
+        self.add_normalised(neighbour, target, neighbour_target, F::ONE, u);
+    }
+
+    /// [`add`](Self::add) with weights for normalised targets: `ratio` is an estimate of the integral of the receiver's target over that of the
+    /// neighbour's.
+    ///
+    /// ```text
+    /// g_i -> g_i * ratio,    ratio ~ (integral of g_c) / (integral of g_i)
+    /// ```
+    /// Samples are distributed as the *normalised* target, so a neighbour that sees much more light would otherwise be trusted with what it
+    /// hardly ever selects: fireflies, more of them with each round.
+    ///
+    /// **Unbiased** with any ratio that does not depend on the samples that are combined, such as one from other random numbers. What is no positive
+    /// number counts as one.
+    #[inline]
+    pub fn add_normalised(
+        &mut self,
+        neighbour: Resampled<X, F>,
+        target: &impl Target<X, F>,
+        neighbour_target: &impl Target<X, F>,
+        ratio: F,
+        u: F,
+    ) {
         if neighbour.confidence.weight_or_zero() == F::ZERO {
             return;
         }
         let share = neighbour.confidence / self.total;
         if let Some(own) = &self.canonical.selected {
-            let part = self.neighbour_part(own.score, neighbour_target.score(&own.sample));
+            let part = self.neighbour_part(own.score, neighbour_target.score(&own.sample), ratio);
             self.canonical_weight += share * (F::ONE - part);
         }
         let (score, weight) = match &neighbour.selected {
             Some(theirs) => {
                 let score = target.score(&theirs.sample);
-                (score, share * self.neighbour_part(score, theirs.score))
+                (score, share * self.neighbour_part(score, theirs.score, ratio))
             }
             None => (F::ZERO, F::ZERO),
         };

@@ -273,14 +273,14 @@ fn a_dropped_sample_keeps_its_confidence_and_its_target_is_zero_where_it_was_dro
 
 proptest! {
     /// A probe of the implementation's weights: every input in turn has selected `x` with `W = 1`, the others nothing; the
-    /// contribution weight of the outcome is then the input's weight.
+    /// contribution weight of the outcome is then the input's weight. With any normalisation of the neighbours' targets.
     #[test]
     fn pairwise_weights_sum_to_one(
         g_own in 1e-3..1e3_f64,
-        neighbours in prop::collection::vec((prop_oneof![1 => Just(0.0), 4 => 1e-3..1e3_f64], 0.5..100.0_f64), 1..6),
+        neighbours in prop::collection::vec((prop_oneof![1 => Just(0.0), 4 => 1e-3..1e3_f64], 0.5..100.0_f64, 1e-3..1e3_f64), 1..6),
         c_own in 0.5..100.0_f64,
     ) {
-        let all: f64 = neighbours.iter().map(|(_, c)| c).sum();
+        let all: f64 = neighbours.iter().map(|(_, c, _)| c).sum();
         let (target, nothing) = (|_: &usize| g_own, Resampled { selected: None, confidence: 0.0 });
         let sample = |score, confidence| Resampled {
             selected: Some(Selected { sample: 0_usize, score, contribution_weight: 1.0 }),
@@ -293,9 +293,9 @@ proptest! {
             }
             let own = if k == 0 { sample(g_own, c_own) } else { Resampled { confidence: c_own, ..nothing } };
             let mut pairwise = Pairwise::new(own, all);
-            for (i, &(g, confidence)) in neighbours.iter().enumerate() {
+            for (i, &(g, confidence, ratio)) in neighbours.iter().enumerate() {
                 let input = if k == i + 1 { sample(g, confidence) } else { Resampled { confidence, ..nothing } };
-                pairwise.add(input, &target, &|_: &usize| g, 0.5);
+                pairwise.add_normalised(input, &target, &|_: &usize| g, ratio, 0.5);
             }
             sum += pairwise.finish(0.5).contribution_weight();
         }

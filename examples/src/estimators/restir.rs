@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use glam::Vec3A;
 use qmc_sampling::warp::sample_concentric_disk;
-use qmc_sampling::{Sampler, SamplerFamily};
+use qmc_sampling::{Independent, Sampler, SamplerFamily};
 use rayon::prelude::*;
 use ris::{Budget, Pairwise, Proposal, Resampled, Reservoir, Source, Target};
 use scene_core::film::{Film, FilmError, FilmTile};
-use scene_core::{Counting, EmitterChoice, RayCounts, Scene, Sharpness, Spectrum, TransportMode, Vertex};
+use scene_core::{Counting, EmitterChoice, RayCounts, Rgb, Scene, Sharpness, Spectrum, TransportMode, Vertex};
 use smallvec::SmallVec;
 
 use super::resampled::{LightPoint, PointTarget, reusable};
@@ -29,8 +29,11 @@ use crate::render::{CameraPass, PassContext, PassCounts, TILE_SIZE};
 /// average up to `(k + 1)^r` samples of as many pixels for `2 k r` rays. **Without**, candidates are shared and nothing else: what occlusion adds to
 /// the variance stays.
 ///
-/// **Unbiased**, for any neighbours: they are chosen by normals and distances, never by what they selected. All samples of a pass over the
-/// image depend on each other, those of different passes do not.
+/// The weights `m_i` are those of targets that are normalised by the brightness of the pixels in the passes before; the first pass does without.
+///
+/// **Unbiased**, for any neighbours: they are chosen by normals and distances, never by what they selected; and for any normalisation, since the numbers of
+/// a pass are independent of those before (they are hashed, not those of the sampler: only rays keep its stratification). All samples of a pass over the
+/// image depend on each other, those of different passes by the weights alone.
 ///
 /// **Cost.** Per pixel and sample: one closest hit, `M` candidates, `2 k` scores per round, one shadow ray.
 ///
@@ -118,7 +121,13 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         let size = [film.width(), film.height()];
 
         let place = |pixel: usize| [(pixel % width) as u32, (pixel / width) as u32];
-        let numbers = |pixel: usize, domain: u32| context.sampler(place(pixel), index).fork(domain);
+        // Independent of those of other passes, on which the weights depend.
+        let numbers = |pixel: usize, domain: u32| {
+            let mut seed = context.sampler(place(pixel), index).fork(domain);
+            let bits = [seed.next_1d(), seed.next_1d()].map(|u| u64::from(u.to_bits()));
+            Independent::new(bits[0] << 32 | bits[1]).sampler(pixel as u64, u64::from(domain))
+        };
+        let brightness = brightness(film);
 
         // Candidates of each pixel's own.
         let (eyes, mut counts) =
@@ -131,7 +140,8 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         // Reuse.
         for round in 0..self.rounds {
             let (reused, rays) = for_pixels(context.scene, count, |scene, pixel| {
-                self.reuse(scene, &eyes, &picked, pixel, size, numbers(pixel, REUSE_DOMAIN.wrapping_add(round)))
+                let numbers = numbers(pixel, REUSE_DOMAIN.wrapping_add(round));
+                self.reuse(scene, &eyes, &picked, &brightness, pixel, size, numbers)
             });
             picked = reused;
             counts += rays;
@@ -218,6 +228,7 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         scene: &Counting<'s, S>,
         eyes: &[Eye<S::Vertex<'s>>],
         picked: &[Resampled<LightPoint>],
+        brightness: &[f32],
         pixel: usize,
         size: [u32; 2],
         mut numbers: R,
@@ -240,7 +251,8 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         for other in neighbours {
             let Some(other_vertex) = &eyes[other].vertex else { continue };
             let other_target = PointTarget { target: self.direct.target(scene, other_vertex), tests_visibility };
-            pairwise.add(picked[other], &target, &other_target, numbers.next_1d());
+            let ratio = brightness[pixel] / brightness[other];
+            pairwise.add_normalised(picked[other], &target, &other_target, ratio, numbers.next_1d());
         }
         pairwise.finish(numbers.next_1d())
     }
@@ -261,6 +273,30 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         if is_seen { value } else { unlit }
     }
 }
+
+/// How bright each pixel is by the passes before: the mean over it and its neighbours, with a floor of a hundredth of the image's mean. One for all in the
+/// first pass.
+fn brightness(film: &Film) -> Vec<f32> {
+    let (width, height) = (film.width() as usize, film.height() as usize);
+    let luminance: Vec<f64> =
+        film.pixels().iter().map(|pixel| Rgb::from(pixel.mean().map(|x| x as f32)).luminance().into()).collect();
+    let mean = luminance.iter().sum::<f64>() / luminance.len().max(1) as f64;
+    if film.samples() == 0 || !(mean > 0.0 && mean.is_finite()) {
+        return vec![1.0; luminance.len()];
+    }
+    let around = |center: usize, len: usize| center.saturating_sub(1)..len.min(center + 2);
+    let smooth = |pixel: usize| {
+        let (rows, columns) = (around(pixel / width, height), around(pixel % width, width));
+        let count = rows.len() * columns.len();
+        let sum: f64 =
+            rows.flat_map(|y| columns.clone().map(move |x| (x, y))).map(|(x, y)| luminance[y * width + x]).sum();
+        (sum / count as f64).max(FLOOR * mean) as f32
+    };
+    (0..luminance.len()).map(smooth).collect()
+}
+
+/// Least brightness that counts, as a part of the image's mean.
+const FLOOR: f64 = 0.01;
 
 /// The pixel that `u` chooses in a disk around another, if it is in the image.
 fn neighbour(pixel: usize, [width, height]: [u32; 2], u: [f32; 2], radius: f32) -> Option<usize> {

@@ -66,6 +66,12 @@ impl Trials {
         self.values.iter().map(Replications::variance).sum::<f64>() / self.values.len().max(1) as f64
     }
 
+    /// The variance of a pixel's value over its squared mean plus 0.01, mean over pixels and channels.
+    pub fn relative_variance(&self) -> f64 {
+        let relative = |pixel: &Replications| pixel.variance() / (pixel.mean() * pixel.mean() + 0.01);
+        self.values.iter().map(relative).sum::<f64>() / self.values.len().max(1) as f64
+    }
+
     /// The measurements of a row.
     #[must_use]
     pub fn fill(&self, row: Row) -> Row {

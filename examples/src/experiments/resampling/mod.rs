@@ -21,7 +21,7 @@ use scene_core::texture::{ColorSpace, Image};
 use scene_core::{Scene, Sensor, Spectrum, Vertex, builtin};
 
 use super::setup::asset_file;
-use super::{Claim, Context, Ratio, Setup, Trials};
+use super::{Claim, Context, Ratio, Setup};
 use crate::choices::{AnyChoice, LightSelection};
 use crate::estimators::{DirectLight, EnvironmentSampling, ResampledDirect, SourceMix};
 use crate::program::{EstimatorName, Failure, RenderSettings};
@@ -133,31 +133,6 @@ fn blob_hdr(context: &Context, size: [u32; 2]) -> Result<Option<Setup>, Failure>
     let Some(path) = asset_file("env/spiaggia_di_mondello_1k.hdr") else { return Ok(None) };
     let image = Arc::new(Image::open(&path, ColorSpace::Linear)?);
     Setup::of(context, builtin::blob_under(image, 1.0, 90.0), size).map(Some)
-}
-
-/// Renderings of one setting: error times cost of each trial, in seconds and in rays.
-#[derive(Default)]
-struct Cost {
-    trials: Trials,
-    by_seconds: Replications,
-    by_rays: Replications,
-}
-
-impl Cost {
-    /// The measure of error times cost does not depend on the number of samples: variance falls as one over the time.
-    fn push(
-        &mut self,
-        rendering: &crate::render::Rendering,
-        reference: &scene_core::film::LayeredImage,
-    ) -> Result<(), Failure> {
-        let (count, before) = (self.trials.count() as f64, self.trials.relative_mse().mean());
-        self.trials.push(rendering, reference)?;
-        let total = self.trials.relative_mse().mean() * (count + 1.0);
-        let error = if count > 0.0 { total - before * count } else { total };
-        self.by_seconds.push(error * rendering.seconds);
-        self.by_rays.push(error * rendering.rays.total() as f64);
-        Ok(())
-    }
 }
 
 /// `1 - ratio`, with its interval.
