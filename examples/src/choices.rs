@@ -74,6 +74,9 @@ pub enum LightSelection {
     Power,
     /// By resampling candidates, as with `--direct ris`; where that does not apply, in proportion to their power.
     Ris,
+    /// The lights whose photons arrived near by; see `--light-photons` and the options with it. Where that does not apply, in proportion
+    /// to their power.
+    Photons,
 }
 
 /// A choice of `scene-core` by name.
@@ -90,7 +93,9 @@ impl AnyChoice {
     pub fn new<E: Emitter>(selection: LightSelection, emitters: &[E]) -> Self {
         match selection {
             LightSelection::Uniform => Self::Uniform(UniformChoice::new(emitters.len())),
-            LightSelection::Power | LightSelection::Ris => Self::Power(PowerChoice::new(emitters)),
+            LightSelection::Power | LightSelection::Ris | LightSelection::Photons => {
+                Self::Power(PowerChoice::new(emitters))
+            }
         }
     }
 }

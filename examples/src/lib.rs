@@ -4,6 +4,7 @@
 //! - [`render`]: the loop over pixels, passes and threads.
 //! - [`choices`]: heuristics and light selection by name.
 //! - [`light_paths`]: light paths by name.
+//! - [`light_photons`]: light selection by photons.
 //! - [`resampling`]: resampling by name.
 //! - [`samplers`]: samplers by name.
 //! - [`metrics`]: how far an image is from another.
@@ -15,6 +16,7 @@ pub mod choices;
 pub mod estimators;
 pub mod experiments;
 pub mod light_paths;
+pub mod light_photons;
 pub mod metrics;
 pub mod output;
 pub mod program;

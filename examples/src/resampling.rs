@@ -7,7 +7,7 @@ use scene_core::{EmitterId, Ray, ScatterSample, Scene, Sharpness, SurfacePoint, 
 
 use crate::choices::{AnyChoice, AnyHeuristic, LightSelection};
 use crate::estimators::{
-    DirectLight, Directions, EnvironmentSampling, LightAlone, NextEvent, OwnSampling, ResampledDirect,
+    DirectLight, Directions, EnvironmentSampling, LightAlone, NextEvent, OwnSampling, PhotonLights, ResampledDirect,
     ResampledScattering, RestirDirect, ScatterSampling, Scattered, ScatteringAlone, SourceMix, TargetName,
     VisibilityProbes, measure_cost,
 };
@@ -215,6 +215,8 @@ pub enum AnyDirect<'a> {
     Resampled(ResampledDirect<'a, AnyChoice>),
     /// Scattering alone.
     Scattering(ScatteringAlone),
+    /// The lights whose photons arrived near by.
+    Photons(&'a PhotonLights),
 }
 
 impl DirectLight for AnyDirect<'_> {
@@ -232,6 +234,7 @@ impl DirectLight for AnyDirect<'_> {
             Self::LightAlone(direct) => direct.sample(scene, vertex, length, wanted, sampler),
             Self::Resampled(direct) => direct.sample(scene, vertex, length, wanted, sampler),
             Self::Scattering(direct) => direct.sample(scene, vertex, length, wanted, sampler),
+            Self::Photons(direct) => direct.sample(scene, vertex, length, wanted, sampler),
         }
     }
 
@@ -249,6 +252,7 @@ impl DirectLight for AnyDirect<'_> {
             Self::LightAlone(direct) => direct.scattering_weight(scene, from, ray, id, at),
             Self::Resampled(direct) => direct.scattering_weight(scene, from, ray, id, at),
             Self::Scattering(direct) => direct.scattering_weight(scene, from, ray, id, at),
+            Self::Photons(direct) => direct.scattering_weight(scene, from, ray, id, at),
         }
     }
 }

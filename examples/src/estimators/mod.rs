@@ -6,6 +6,7 @@ mod connections;
 mod direct;
 mod light;
 mod path;
+mod photon_lights;
 mod resampled;
 mod restir;
 mod scattering;
@@ -21,6 +22,7 @@ pub use connections::ResampledConnections;
 pub use direct::{DirectLight, LightAlone, NextEvent, Scattered, ScatteringAlone};
 pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
+pub use photon_lights::PhotonLights;
 pub use resampled::{
     EnvironmentSampling, LightCandidate, LightPoint, LightSource, LightTarget, Place, PointTarget, ResampledDirect,
     SourceMix, TargetName, VisibilityProbes, measure_cost, reusable,

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
 use crate::light_paths::LightPathSettings;
+use crate::light_photons::LightPhotonSettings;
 use crate::resampling::ResamplingSettings;
 use crate::samplers::SamplerName;
 
@@ -133,6 +134,9 @@ pub struct RenderArguments {
     /// Resampling.
     #[command(flatten)]
     pub resampling: ResamplingSettings,
+    /// Light selection by photons.
+    #[command(flatten)]
+    pub light_photons: LightPhotonSettings,
 }
 
 /// Arguments of `diff`.

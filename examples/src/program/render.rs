@@ -14,14 +14,15 @@ use super::{Failure, RenderArguments, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
     AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NextEvent, NoLightPaths, OwnSampling, PathTracer,
-    VirtualLights,
+    PhotonLights, VirtualLights,
 };
 use crate::light_paths::LightPathSettings;
+use crate::light_photons::LightPhotonSettings;
 use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
-use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared};
-use crate::resampling::{DirectName, ResamplingSettings};
+use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
+use crate::resampling::{AnyDirect, DirectName, ResamplingSettings};
 use crate::samplers::{AnyFamily, SamplerName};
 
 /// The estimators.
@@ -103,12 +104,20 @@ pub struct RenderSettings {
     pub light_paths: LightPathSettings,
     /// Resampling of direct light and of directions.
     pub resampling: ResamplingSettings,
+    /// Light selection by photons.
+    pub light_photons: LightPhotonSettings,
 }
 
 impl RenderSettings {
     /// Whether paths are traced in the usual way, without any resampling.
     fn is_plain(&self) -> bool {
-        self.direct_settings().is_plain()
+        !self.selects_by_photons() && self.direct_settings().is_plain()
+    }
+
+    /// Whether photons tell which lights get shadow rays.
+    fn selects_by_photons(&self) -> bool {
+        let applies = matches!(self.estimator, EstimatorName::Path | EstimatorName::Direct);
+        applies && self.lights == LightSelection::Photons && self.resampling.direct == DirectName::Nee
     }
 
     /// The settings of resampling; `--lights ris` asks for it too.
@@ -136,6 +145,7 @@ impl RenderSettings {
             ao_distance: f32::INFINITY,
             light_paths: LightPathSettings::default(),
             resampling: ResamplingSettings::default(),
+            light_photons: LightPhotonSettings::default(),
         }
     }
 }
@@ -199,15 +209,26 @@ fn estimate_with<S: Scene + Sync>(
             let resampling = settings.direct_settings();
             let probes = resampling.probes(scene);
             let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
+            let photons = light_photons(scene, samplers, settings)?;
             let camera = PathTracer {
-                direct: resampling.direct(settings.heuristic, choice, resampled),
+                direct: match &photons {
+                    Some(photons) => AnyDirect::Photons(photons),
+                    None => resampling.direct(settings.heuristic, choice, resampled),
+                },
                 scattering: resampling.scattering(scene),
                 max_depth: path.max_depth,
                 roulette,
                 first_event: FirstEvent::Any,
             };
-            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
+            let mut rendering =
+                Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                    .render(observe)?;
+            if let Some(photons) = &photons {
+                rendering.rays += photons.rays();
+                rendering.preparation_seconds += photons.seconds();
+                rendering.seconds += photons.seconds();
+            }
+            Ok(rendering)
         }
         EstimatorName::RestirDirect => {
             let probes = resampling.probes(scene);
@@ -258,6 +279,18 @@ fn estimate_with<S: Scene + Sync>(
             Job { scene, samplers, camera: &ao, light: None::<&NoLightPaths>, filter, budget, threads }.render(observe)
         }
     }
+}
+
+/// Traces the photons that tell which lights contribute, if they are asked for.
+fn light_photons<S: Scene + Sync>(
+    scene: &S,
+    samplers: &impl SamplerFamily,
+    settings: &RenderSettings,
+) -> Result<Option<PhotonLights>, RenderError> {
+    if !settings.selects_by_photons() {
+        return Ok(None);
+    }
+    Ok(thread_pool(settings.threads)?.install(|| PhotonLights::trace(scene, samplers, &settings.light_photons))?)
 }
 
 /// A finished image with the settings in its attributes.
@@ -342,8 +375,14 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         filter,
         light_paths: arguments.light_paths.clone(),
         resampling: arguments.resampling.clone(),
+        light_photons: arguments.light_photons.clone(),
         ao_distance: arguments.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
     };
+    if settings.selects_by_photons() && settings.light_photons.other_rays == 0 {
+        report(
+            "warning: without shadow rays for other lights, light that the photons missed is lost (--other-rays 1 finds it)",
+        );
+    }
     let mut watch = Watch::new(arguments, &settings, &name);
     let (image, rendering) = render_to_image(&scene, &settings, |pass| watch.observe(pass))?;
     watch.finish(&image, &rendering);

@@ -29,7 +29,7 @@ const LIGHT_PATHS_PER_TASK: u64 = 4096;
 /// Number of such tasks whose splats wait in memory at once.
 const LIGHT_TASKS_PER_WAVE: u64 = 64;
 /// The stream of the light paths' samplers, apart from those of the pixels: no image has so many.
-const LIGHT_STREAM: u64 = 1 << 40;
+pub(crate) const LIGHT_STREAM: u64 = 1 << 40;
 
 /// What to render, and how.
 #[derive(Debug)]
@@ -76,8 +76,10 @@ pub struct Rendering {
     pub light_paths: u64,
     /// Rays traced.
     pub rays: RayCounts,
-    /// Time spent in rendering.
+    /// Time spent in rendering, with what came before the first pass.
     pub seconds: f64,
+    /// The part of it before the first pass: photons that tell which lights contribute.
+    pub preparation_seconds: f64,
     /// Number of threads that rendered.
     pub threads: usize,
 }
@@ -104,6 +106,9 @@ pub enum RenderError {
     /// The costs of resampling could not be measured.
     #[error("the robust number of candidates cannot be measured: {0}; give one with --candidates")]
     Cost(#[from] ris::CostError),
+    /// Lights cannot be selected by photons.
+    #[error("lights cannot be selected by photons: {0}")]
+    LightPhotons(#[from] crate::light_photons::LightPhotonsError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -112,6 +117,15 @@ pub enum RenderError {
         /// What the system says.
         reason: String,
     },
+}
+
+/// So many threads; zero is one per core.
+///
+/// # Errors
+/// If they cannot be started.
+pub fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, RenderError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| RenderError::Threads { threads, reason: error.to_string() })
 }
 
 impl<S, F, E, L> Job<'_, S, F, E, L>
@@ -131,10 +145,7 @@ where
     ) -> Result<Rendering, RenderError> {
         let [width, height] = self.scene.sensor().resolution();
         let mut film = Film::new(width, height)?;
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-            .map_err(|error| RenderError::Threads { threads: self.threads, reason: error.to_string() })?;
+        let pool = thread_pool(self.threads)?;
         let start = Instant::now();
         let mut schedule = Schedule::new(self.budget);
         let (mut rays, mut light_paths) = (RayCounts::default(), 0);
@@ -165,7 +176,7 @@ where
         })?;
         let samples = schedule.done();
         let (seconds, threads) = (start.elapsed().as_secs_f64(), pool.current_num_threads());
-        Ok(Rendering { film, samples, light_paths, rays, seconds, threads })
+        Ok(Rendering { film, samples, light_paths, rays, seconds, preparation_seconds: 0.0, threads })
     }
 
     /// Traces the light paths with the given numbers, wave by wave, and adds their splats in order.

@@ -14,7 +14,7 @@ pub(super) use reuse::measure as reuse;
 
 use std::sync::Arc;
 
-use qmc_sampling::{Independent, Replications, Sampler, SamplerFamily};
+use qmc_sampling::{Independent, Sampler, SamplerFamily};
 use rayon::prelude::*;
 use ris::{Budget, RatioMap, Source, Target, VarianceModel};
 use scene_core::texture::{ColorSpace, Image};
