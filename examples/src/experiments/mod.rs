@@ -10,6 +10,7 @@
 //! - [`Trials`]: renderings of one setting with several seeds, against a reference; [`ratio_of_means`] compares two.
 
 mod context;
+mod many_lights;
 mod report;
 mod resampling;
 mod samplers;
@@ -76,6 +77,11 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "ris-reuse",
         about: "reuse of samples between pixels against resampling alone, in equal time",
         measure: resampling::reuse,
+    },
+    Experiment {
+        name: "many-lights",
+        about: "figure 5 of Keller and Wald 2000: lights selected by photons, in equal time and by the number of lights",
+        measure: many_lights::measure,
     },
 ];
 
