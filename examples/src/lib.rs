@@ -5,6 +5,7 @@
 //! - [`choices`]: heuristics and light selection by name.
 //! - [`light_paths`]: light paths by name.
 //! - [`light_photons`]: light selection by photons.
+//! - [`photons`]: photon maps by name.
 //! - [`resampling`]: resampling by name.
 //! - [`samplers`]: samplers by name.
 //! - [`metrics`]: how far an image is from another.
@@ -19,6 +20,7 @@ pub mod light_paths;
 pub mod light_photons;
 pub mod metrics;
 pub mod output;
+pub mod photons;
 pub mod program;
 pub mod render;
 pub mod resampling;

@@ -7,6 +7,7 @@ mod direct;
 mod light;
 mod path;
 mod photon_lights;
+mod photons;
 mod resampled;
 mod restir;
 mod scattering;
@@ -23,6 +24,10 @@ pub use direct::{DirectLight, LightAlone, NextEvent, Scattered, ScatteringAlone}
 pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
 pub use photon_lights::PhotonLights;
+pub use photons::{
+    Importance, ImportonTracing, MAX_LENGTH, Maps, PhotonCaustics, PhotonEye, PhotonMapping, PhotonTracing, PhotonView,
+    ProgressivePhotons, Sharpness, Storing, WithCaustics,
+};
 pub use resampled::{
     EnvironmentSampling, LightCandidate, LightPoint, LightSource, LightTarget, Place, PointTarget, ResampledDirect,
     SourceMix, TargetName, VisibilityProbes, measure_cost, reusable,

@@ -2,25 +2,27 @@
 
 use qmc_sampling::Sampler;
 use scene_core::{EmitterChoice, Ray, Scene, Vertex};
-use vpl_gi::{LightTracing, Observer, RobustIgi, VirtualPointLights};
+use vpl_gi::{CausticMap, LightTracing, Observer, RobustIgi, VirtualPointLights};
 
-use super::FirstHit;
+use super::{FirstHit, PhotonCaustics};
 use crate::render::SharingEstimator;
 
 /// [`RobustIgi`] with light paths that samples share.
 ///
 /// With threshold infinity and the residual dropped or not it is instant radiosity.
 #[derive(Clone, Copy, Debug)]
-pub struct VirtualLights<C> {
+pub struct VirtualLights<'a, C> {
     /// The eye paths.
     pub eye: RobustIgi,
     /// The light paths.
     pub light: LightTracing<C>,
     /// Number of light paths that a sample sees.
     pub paths: u32,
+    /// Caustics, if rays do not look for them.
+    pub caustics: Option<&'a PhotonCaustics>,
 }
 
-impl<C: EmitterChoice + Sync> SharingEstimator for VirtualLights<C> {
+impl<C: EmitterChoice + Sync> SharingEstimator for VirtualLights<'_, C> {
     type Shared<V: Vertex + Send + Sync> = VirtualPointLights<V>;
 
     fn paths(&self) -> u32 {
@@ -50,7 +52,8 @@ impl<C: EmitterChoice + Sync> SharingEstimator for VirtualLights<C> {
         V: Vertex<Spectrum = S::Spectrum> + Send + Sync,
     {
         let mut first = FirstVertex { ray, hit: None };
-        let radiance = self.eye.trace(scene, lights, None, ray, sampler, &mut first);
+        let caustics = self.caustics.map(|caustics| caustics as &dyn CausticMap<_>);
+        let radiance = self.eye.trace(scene, lights, caustics, ray, sampler, &mut first);
         (radiance, first.hit)
     }
 }

@@ -8,6 +8,7 @@ use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
 use crate::light_paths::LightPathSettings;
 use crate::light_photons::LightPhotonSettings;
+use crate::photons::PhotonSettings;
 use crate::resampling::ResamplingSettings;
 use crate::samplers::SamplerName;
 
@@ -137,6 +138,9 @@ pub struct RenderArguments {
     /// Light selection by photons.
     #[command(flatten)]
     pub light_photons: LightPhotonSettings,
+    /// Photon maps.
+    #[command(flatten)]
+    pub photons: PhotonSettings,
 }
 
 /// Arguments of `diff`.

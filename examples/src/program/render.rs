@@ -21,6 +21,7 @@ use crate::light_photons::LightPhotonSettings;
 use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
+use crate::photons::{PathLimits, PhotonSettings};
 use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
 use crate::resampling::{AnyDirect, DirectName, ResamplingSettings};
 use crate::samplers::{AnyFamily, SamplerName};
@@ -45,6 +46,10 @@ pub enum EstimatorName {
     Bdpt,
     /// Emission and direct light, with samples that neighbouring pixels share without bias.
     RestirDirect,
+    /// Photon mapping: direct light as in path tracing, caustics and indirect light from photon maps. Biased.
+    PhotonMap,
+    /// Stochastic progressive photon mapping: new photons and a smaller radius in every pass. Consistent.
+    Sppm,
 }
 
 impl EstimatorName {
@@ -106,6 +111,8 @@ pub struct RenderSettings {
     pub resampling: ResamplingSettings,
     /// Light selection by photons.
     pub light_photons: LightPhotonSettings,
+    /// Photon maps.
+    pub photons: PhotonSettings,
 }
 
 impl RenderSettings {
@@ -146,6 +153,7 @@ impl RenderSettings {
             light_paths: LightPathSettings::default(),
             resampling: ResamplingSettings::default(),
             light_photons: LightPhotonSettings::default(),
+            photons: PhotonSettings::default(),
         }
     }
 }
@@ -200,6 +208,7 @@ fn estimate_with<S: Scene + Sync>(
         path.max_depth = path.max_depth.min(2);
     }
     let resampling = &settings.resampling;
+    let limits = PathLimits { max_depth: settings.max_depth, roulette };
     match settings.estimator {
         EstimatorName::Path | EstimatorName::Direct if settings.is_plain() => {
             Job { scene, samplers, camera: &path, light: None::<&NoLightPaths>, filter, budget, threads }
@@ -237,6 +246,20 @@ fn estimate_with<S: Scene + Sync>(
             Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
                 .render(observe)
         }
+        EstimatorName::PhotonMap | EstimatorName::Sppm => {
+            let resampling = settings.direct_settings();
+            let probes = resampling.probes(scene);
+            let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
+            let direct = resampling.direct(settings.heuristic, choice.clone(), resampled);
+            if settings.estimator == EstimatorName::Sppm {
+                let camera = settings.photons.progressive(scene, direct, choice, limits)?;
+                return Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                    .render(observe);
+            }
+            let camera = settings.photons.mapping(scene, direct, choice, limits)?;
+            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
+        }
         EstimatorName::Light => {
             path.first_event = FirstEvent::SpecularOnly;
             let light = LightTracer { choice, max_depth: settings.max_depth, roulette };
@@ -252,8 +275,13 @@ fn estimate_with<S: Scene + Sync>(
                 max_length: settings.max_depth.saturating_sub(2),
                 roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
             };
-            let estimator = VirtualLights { eye, light, paths: settings.light_paths.light_paths };
+            let estimator = VirtualLights { eye, light, paths: settings.light_paths.light_paths, caustics: None };
             let camera = Shared { estimator, sharing: settings.light_paths.sharing() };
+            if settings.photons.caustics && !drops {
+                let camera = settings.photons.complement(scene, camera, limits)?;
+                return Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
+                    .render(observe);
+            }
             Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
                 .render(observe)
         }
@@ -376,6 +404,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         light_paths: arguments.light_paths.clone(),
         resampling: arguments.resampling.clone(),
         light_photons: arguments.light_photons.clone(),
+        photons: arguments.photons.clone(),
         ao_distance: arguments.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
     };
     if settings.selects_by_photons() && settings.light_photons.other_rays == 0 {

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use photon_map::Scratch;
 use qmc_sampling::{Interleaved, Sampler, SamplerFamily};
 use rayon::prelude::*;
 use scene_core::film::{Film, FilmError, FilmTile, Filter, Pixel, SplatBuffer};
@@ -75,6 +76,37 @@ impl<S: Scene + Sync, F: SamplerFamily> PassContext<'_, S, F> {
     /// The sampler of sample number `index` of a pixel, from its first number on.
     pub fn sampler(&self, place: [u32; 2], index: u64) -> F::Sampler {
         self.samplers.sampler(self.stream(place), index)
+    }
+
+    /// The sampler of light path number `index` of photon maps.
+    pub fn photon_sampler(&self, index: u64) -> F::Sampler {
+        self.samplers.sampler(PHOTON_STREAM, index)
+    }
+
+    /// The sampler of path number `index` from the sensor that says where photons are wanted.
+    pub fn importon_sampler(&self, index: u64) -> F::Sampler {
+        self.samplers.sampler(IMPORTON_STREAM, index)
+    }
+
+    /// Adds the given samples to every pixel, in parallel; each thread has memory for queries of photon maps.
+    pub fn add_all(
+        &self,
+        film: &mut Film,
+        samples: Range<u64>,
+        radiance: impl Fn(&Counting<'_, S>, &mut Scratch, Ray, &mut F::Sampler) -> (S::Spectrum, Option<FirstHit>) + Sync,
+    ) -> RayCounts {
+        let add = |mut tile: FilmTile<'_>| {
+            let (scene, mut scratch) = (Counting::new(self.scene), Scratch::default());
+            for (place, pixel) in tile.pixels_mut() {
+                for index in samples.clone() {
+                    self.add_sample(&scene, place, pixel, index, |ray, sampler| {
+                        radiance(&scene, &mut scratch, ray, sampler)
+                    });
+                }
+            }
+            scene.counts()
+        };
+        film.tiles_mut(TILE_SIZE).into_par_iter().map(add).sum()
     }
 
     /// The stream of a pixel.
@@ -173,6 +205,10 @@ pub struct Shared<E> {
 
 /// Streams of light paths of single pixels, beyond the one of shared light paths.
 const PIXEL_LIGHT_STREAMS: u64 = LIGHT_STREAM + 1;
+/// The stream of light paths of photon maps: they are others than those that eye paths are connected to.
+const PHOTON_STREAM: u64 = 1 << 41;
+/// The stream of paths from the sensor that say where photons are wanted.
+const IMPORTON_STREAM: u64 = PHOTON_STREAM + 1;
 /// Numbers for the connections to the sensor.
 const LENS_DOMAIN: u32 = 0x6c65_6e73;
 

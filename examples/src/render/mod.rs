@@ -109,6 +109,9 @@ pub enum RenderError {
     /// Lights cannot be selected by photons.
     #[error("lights cannot be selected by photons: {0}")]
     LightPhotons(#[from] crate::light_photons::LightPhotonsError),
+    /// Settings of photon maps.
+    #[error(transparent)]
+    Photons(#[from] crate::photons::PhotonError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

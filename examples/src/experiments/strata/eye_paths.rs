@@ -27,7 +27,7 @@ enum Shown {
 
 #[derive(Clone, Copy)]
 struct Strata<C> {
-    lights: VirtualLights<C>,
+    lights: VirtualLights<'static, C>,
     shown: Shown,
 }
 
@@ -101,7 +101,7 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
             roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
         };
         let eye = RobustIgi { max_depth: MAX_DEPTH, roulette: RussianRoulette::Never, ..eye };
-        let lights = VirtualLights { eye, light, paths: context.effort(8, 32) };
+        let lights = VirtualLights { eye, light, paths: context.effort(8, 32), caustics: None };
         let estimator = Strata { lights, shown };
         Ok(Shared { estimator, sharing: Sharing::Interleaved(Interleaved::new(3, 3)?) })
     };

@@ -1,0 +1,83 @@
+//! Photon mapping with one pair of maps for the whole image.
+
+use core::ops::Range;
+use std::sync::OnceLock;
+
+use photon_map::{DensityEstimation, KeepAll, MapPartition, PhotonMaps};
+use qmc_sampling::SamplerFamily;
+use scene_core::film::{Film, FilmError};
+use scene_core::{EmitterChoice, RayCounts, Scene};
+
+use super::{ImportonTracing, Maps, PhotonEye, PhotonTracing, PhotonView, Storing};
+use crate::estimators::DirectLight;
+use crate::render::{CameraPass, PassContext, PassCounts};
+
+/// Photon mapping: a global and a caustic map are made once, then eye paths look at them.
+///
+/// **Biased**, see [`PhotonEye`]; more samples per pixel do not help against it, nor against the noise of the maps.
+/// [`ProgressivePhotons`](super::ProgressivePhotons) is consistent.
+///
+/// **Cost.** The light paths, once; their rays count as rays of the first pass.
+#[derive(Debug)]
+pub struct PhotonMapping<D, C> {
+    /// The eye paths.
+    pub eye: PhotonEye<D>,
+    /// The light paths.
+    pub light: PhotonTracing<C>,
+    /// Their number.
+    pub paths: u64,
+    /// How photons are shared out between the maps.
+    pub partition: MapPartition,
+    /// Where photons are kept; everywhere without.
+    pub importons: Option<ImportonTracing>,
+    /// How the global map is looked at.
+    pub global: DensityEstimation,
+    /// How the caustic map is looked at.
+    pub caustic: DensityEstimation,
+    /// The maps, once they are made.
+    pub maps: OnceLock<Maps>,
+}
+
+impl<D: DirectLight, C: EmitterChoice + Sync> PhotonMapping<D, C> {
+    /// Makes the maps.
+    pub fn make<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (Maps, RayCounts) {
+        let (partition, primary, mut rays) = (self.partition, self.eye.gather > 0, RayCounts::default());
+        let mut photons = PhotonMaps::new();
+        // A bound that is out of range is refused with the settings; here it would mean that every photon is kept.
+        match self.importons.and_then(|importons| importons.trace(context).ok()) {
+            Some((deposition, counts)) => {
+                rays += counts;
+                let storing = Storing { partition, deposition, primary, global: true };
+                rays += storing.trace(context, &self.light, 0, 0..self.paths, &mut photons);
+            }
+            None => {
+                let storing = Storing { partition, deposition: KeepAll, primary, global: true };
+                rays += storing.trace(context, &self.light, 0, 0..self.paths, &mut photons);
+            }
+        }
+        photons.add_paths(&partition, self.paths);
+        let global = PhotonView::new(photons.global, self.global);
+        let caustic = Some(PhotonView::new(photons.caustic, self.caustic));
+        (Maps { global, caustic }, rays)
+    }
+}
+
+impl<D: DirectLight, C: EmitterChoice + Sync> CameraPass for PhotonMapping<D, C> {
+    fn add_samples<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'_, S, F>,
+        film: &mut Film,
+        samples: Range<u64>,
+    ) -> Result<PassCounts, FilmError> {
+        let mut rays = RayCounts::default();
+        let maps = self.maps.get_or_init(|| {
+            let (maps, counts) = self.make(context);
+            rays = counts;
+            maps
+        });
+        rays += context.add_all(film, samples, |scene, scratch, ray, sampler| {
+            self.eye.radiance(scene, maps, scratch, ray, sampler)
+        });
+        Ok(PassCounts { rays, light_paths: 0 })
+    }
+}
