@@ -275,8 +275,8 @@ mod tests {
                 assert!(at.iter().all(|x| (0.0..1.0).contains(x)), "{at:?}");
                 (0..2).for_each(|k| cells[k][(8.0 * at[k]) as usize] += 1);
             }
-            assert_eq!(cells[0], [1; 8]);
-            assert!(rotation[1] > 0.9999 || cells[1] == [1; 8], "{cells:?}");
+            // The largest number of all may be rounded up into the next cell.
+            assert!(rotation[1] > 0.9999 || cells == [[1; 8]; 2], "{cells:?}");
         }
     }
 
