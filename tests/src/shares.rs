@@ -6,7 +6,7 @@ use estimator_checks::assert_shares;
 ///
 /// Each package writes its share beside its tests; this table repeats them, so that their sum is checked when it is
 /// compiled. A test compares it with the sources.
-pub const SHARES: [(&str, f64); 19] = [
+pub const SHARES: [(&str, f64); 20] = [
     ("lichtwerk foreign scene", 1e-8),
     ("mis-heuristics", 1e-8),
     ("photon-map", 5e-8),
@@ -23,6 +23,7 @@ pub const SHARES: [(&str, f64); 19] = [
     ("workspace bidirectional", 5e-9),
     ("workspace estimators", 3e-7),
     ("workspace photon lights", 2e-8),
+    ("workspace photon maps", 2e-8),
     ("workspace resampling", 5e-8),
     ("workspace samplers", 1e-8),
     ("workspace virtual lights", 3e-8),
