@@ -86,7 +86,8 @@ pub struct PhotonSettings {
     /// Light paths: of the maps of photon-map, of each pass (one sample per pixel) otherwise.
     #[arg(long, default_value_t = DEFAULT_PATHS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
     pub photons: u64,
-    /// Radius of density estimation: a number in units of the scene's radius, or `abs:R` in units of length. With --nearest the largest
+    /// Radius of density estimation: a number in units of the scene's radius, or `abs:R` in units of length. With
+    /// --nearest the largest
     /// one, with sppm the first one.
     #[arg(long, default_value = "0.01", value_parser = parse_radius)]
     pub photon_radius: Radius,
@@ -99,14 +100,15 @@ pub struct PhotonSettings {
     /// How photons at a distance count.
     #[arg(long, value_enum, default_value_t)]
     pub kernel: KernelName,
-    /// Global photons over caustic photons, of as many paths each (photon-map): 0.05 keeps a twentieth of the photons that are not caustic.
+    /// Global photons over caustic photons, of as many paths each (photon-map): 0.05 keeps a twentieth of the photons
+    /// that are not caustic.
     #[arg(long, default_value_t = 1.0, value_parser = parse_share)]
     pub global_ratio: f64,
-    /// Which twentieth.
+    /// How the part that the global map keeps is chosen.
     #[arg(long, value_enum, default_value_t)]
     pub partition_variant: PartitionVariant,
-    /// Bounces up to this roughness are sharp: eye paths follow them, and photons after them are caustic. 0: mirrors and glass alone;
-    /// diffuse is 0.5.
+    /// Bounces up to this roughness are sharp: eye paths follow them, and photons after them are caustic. 0: mirrors
+    /// and glass alone; diffuse is 0.5.
     #[arg(long, default_value_t = DEFAULT_ROUGHNESS, value_parser = parse_roughness)]
     pub caustic_roughness: f32,
     /// Rays of final gathering at each eye vertex (photon-map); 0 looks at the global map directly.

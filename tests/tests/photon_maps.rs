@@ -1,5 +1,5 @@
-//! Photon maps: progressive passes converge as theory says, one pair of maps is as far from path tracing as its radius allows, and which
-//! photons are kept changes no expectation.
+//! Photon maps: progressive passes converge as theory says, one pair of maps is as far from path tracing as its radius
+//! allows, and which photons are kept changes no expectation.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::ops::{ControlFlow, Range};
@@ -55,12 +55,13 @@ fn mapped(photons: PhotonSettings) -> RenderSettings {
 /// Maps do not get better with more samples: more batches instead.
 const EFFORT: Effort = Effort { samples: 8, batches: 32, block: 6 };
 
-// --- Convergence ------------------------------------------------------------------------------------------------------------------
+// --- Convergence -----------------------------------------------------------------------------------------------------
 
 /// Width and height of the images of the caustic.
 const SIDE: u32 = 16;
 
-/// A glass ball below a small lamp, and the middle of its caustic on the floor, seen from below the ball: all light that is not direct.
+/// A glass ball below a small lamp, and the middle of its caustic on the floor, seen from below the ball: all light
+/// that is not direct.
 fn caustic() -> ReferenceScene {
     let mut b = SceneBuilder::new("caustic");
     let ground = b.diffuse(0.6, 0.6, 0.6);
@@ -295,7 +296,7 @@ fn progressive_passes_converge_to_path_tracing() {
     println!("{}", truth.agrees_with(SUITE.twin("all paths"), &means).expect_reject());
 }
 
-// --- One pair of maps -------------------------------------------------------------------------------------------------------------
+// --- One pair of maps ------------------------------------------------------------------------------------------------
 
 fn truth(test: &str, scene: &ReferenceScene) -> BatchMeans {
     block_means(&format!("{test}: path"), scene, &path(), Effort { samples: 128, ..EFFORT })
@@ -348,7 +349,8 @@ fn planted_bugs_are_rejected() {
     println!("{}", truth.agrees_with(SUITE.twin("confused"), &wrong).expect_reject());
 }
 
-/// Within a fixed radius estimates are linear in the photons: which ones are kept changes no expectation, and the bias is the same.
+/// Within a fixed radius estimates are linear in the photons: which ones are kept changes no expectation, and the bias
+/// is the same.
 #[test]
 fn what_is_kept_changes_no_expectation() {
     let scene = scenes::build(scenes::glass_ball());
@@ -376,7 +378,7 @@ fn what_is_kept_changes_no_expectation() {
     println!("{}", all.agrees_with(SUITE.twin("cutoff"), &means("cutoff", cutoff)).expect_reject());
 }
 
-// --- The complement of connections ------------------------------------------------------------------------------------------------
+// --- The complement of connections -----------------------------------------------------------------------------------
 
 #[test]
 fn caustics_complement_robust_igi() {
@@ -395,7 +397,7 @@ fn caustics_complement_robust_igi() {
     println!("{}", truth.agrees_with(SUITE.twin("blurred away"), &means).expect_reject());
 }
 
-// --- Exact ------------------------------------------------------------------------------------------------------------------------
+// --- Exact -----------------------------------------------------------------------------------------------------------
 
 #[test]
 fn images_do_not_depend_on_threads() {

@@ -13,7 +13,8 @@ use super::{PhotonTracing, PhotonView, Sharpness, Storing};
 use crate::estimators::VirtualLights;
 use crate::render::{CameraPass, PassContext, PassCounts, Shared};
 
-/// A caustic photon map for `vpl-gi`: photons whose last bounce was a Dirac delta, and no others, wherever eye paths are connected.
+/// A caustic photon map for `vpl-gi`: photons whose last bounce was a Dirac delta, and no others, wherever eye paths
+/// are connected.
 ///
 /// **Biased** by its radius. Knows no `max_depth` but that of its light paths.
 #[derive(Clone, Debug)]
@@ -28,12 +29,14 @@ impl<X: Vertex> CausticMap<X> for PhotonCaustics {
     }
 }
 
-/// Robust instant global illumination with a caustic map, one for each pass over the image, of a radius that shrinks from pass to pass.
+/// Robust instant global illumination with a caustic map, one for each pass over the image, of a radius that shrinks
+/// from pass to pass.
 ///
-/// **Consistent**, as [`ProgressivePhotons`](super::ProgressivePhotons), up to `max_depth`, which light and eye paths obey separately.
+/// **Consistent**, as [`ProgressivePhotons`](super::ProgressivePhotons), up to `max_depth`, which light and eye paths
+/// obey separately.
 ///
-/// Source: Kollig and Keller 2004, section 4.2: "some caustic paths cannot be captured efficiently by any path tracing algorithm, however, these easily are
-/// complemented by a caustic photon map".
+/// Source: Kollig and Keller 2004, section 4.2: "some caustic paths cannot be captured efficiently by any path tracing
+/// algorithm, however, these easily are complemented by a caustic photon map".
 #[derive(Clone, Copy, Debug)]
 pub struct WithCaustics<C> {
     /// What is complemented; its own field for caustics is not looked at.

@@ -7,24 +7,27 @@ use scene_core::{Ray, RussianRoulette, ScatterSample, Scene, Spectrum, SurfacePo
 use super::{Maps, Sharpness};
 use crate::estimators::{DirectLight, FirstHit, Scattered};
 
-/// Eye paths that follow sharp bounces, and at every vertex ask for light that is scattered less sharply: directly from the emitters, and from
-/// photons.
+/// Eye paths that follow sharp bounces, and at every vertex ask for light that is scattered less sharply: directly from
+/// the emitters, and from photons.
 ///
 /// ```text
-/// L = sum over vertices k of beta_k ( L_e + direct light + caustic photons + indirect light ),   beta_(k+1) = beta_k f cos / (p q) by sharp bounces
-/// indirect light = global photons at x_k,      or with final gathering   1/M sum over rays of  f cos / p * (photons at y)
+/// L = sum over vertices k of beta_k ( L_e + direct light + caustic photons + indirect light )
+/// beta_(k+1) = beta_k f cos / (p q)   by sharp bounces
+/// indirect light = global photons at x_k,   or with final gathering   1/M sum over rays of f cos / p (photons at y)
 /// ```
-/// **Symbols.** `beta`: throughput; `y`: what a gather ray hits. At `y` photons of both maps count, primary ones included, but not in directions that
-/// make them caustics at `x`.
+/// **Symbols.** `beta`: throughput; `y`: what a gather ray hits. At `y` photons of both maps count, primary ones
+/// included, but not in directions that make them caustics at `x`.
 ///
-/// Both kinds of light of a vertex partition the directions: [`Sharpness`] says which ones the path follows. So nothing is lost or counted twice
-/// on surfaces that are a bit of both.
+/// Both kinds of light of a vertex partition the directions: [`Sharpness`] says which ones the path follows. So nothing
+/// is lost or counted twice on surfaces that are a bit of both.
 ///
-/// **Biased** by density estimation alone: the maps blur what arrives within their radius (`1/2 mu_2 r^2` times the Laplacian), lose light at
-/// edges of surfaces, where a part of the disk has no photons, and leak a little around corners. Final gathering sees
-/// this bias averaged over its rays, direct visualisation as it is. With radius zero and infinitely many photons it is path tracing.
+/// **Biased** by density estimation alone: the maps blur what arrives within their radius (`1/2 mu_2 r^2` times the
+/// Laplacian), lose light at edges of surfaces, where a part of the disk has no photons, and leak a little around
+/// corners. Final gathering sees this bias averaged over its rays, direct visualisation as it is. With radius zero and
+/// infinitely many photons it is path tracing.
 ///
-/// **Cost.** Per vertex what direct light takes and a query per map; `M` rays and two queries each with final gathering.
+/// **Cost.** Per vertex what direct light takes and a query per map; `M` rays and two queries each with final
+/// gathering.
 ///
 /// **Source.** Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001; the partition by direction is ours.
 #[derive(Clone, Copy, Debug)]

@@ -55,12 +55,14 @@ impl PhotonView {
         Self { map: map.expect("paths are counted, and radii of a gather are in range"), estimation }
     }
 
-    /// Radiance that a surface scatters towards `x.wo()` of the photons around, by the part of its BSDF without Dirac deltas.
+    /// Radiance that a surface scatters towards `x.wo()` of the photons around, by the part of its BSDF without Dirac
+    /// deltas.
     ///
     /// ```text
     /// L ~ 1/N sum over photons k of  K(t_k) / r^2  f(wi_k, x, wo) flux_k
     /// ```
-    /// **Symbols.** As for [`PhotonMap`]. Only photons count whose paths have at most `longest` segments and whose direction `counts`.
+    /// **Symbols.** As for [`PhotonMap`]. Only photons count whose paths have at most `longest` segments and whose
+    /// direction `counts`.
     ///
     /// **Biased**: blurred by the radius.
     pub fn radiance<X: Vertex>(

@@ -7,8 +7,8 @@
 //! - [`PhotonEye`]: eye paths.
 //! - [`PhotonMapping`], [`ProgressivePhotons`], [`WithCaustics`]: passes over the image that put these together.
 //!
-//! Photons carry linear RGB: 32 bytes each. Their tag for the light holds the number of segments of their path, so that no sum
-//! of an eye path and a light path is longer than it may be.
+//! Photons carry linear RGB: 32 bytes each. Their tag for the light holds the number of segments of their path, so that
+//! no sum of an eye path and a light path is longer than it may be.
 
 mod caustics;
 mod eye;

@@ -11,16 +11,19 @@ use super::{Maps, PhotonEye, PhotonTracing, PhotonView, Storing};
 use crate::estimators::DirectLight;
 use crate::render::{CameraPass, PassContext, PassCounts};
 
-/// Progressive photon mapping: every pass over the image, one sample per pixel, has photons of its own and a radius that is smaller than the last
-/// one's.
+/// Progressive photon mapping: every pass over the image, one sample per pixel, has photons of its own and a radius
+/// that is smaller than the last one's.
 ///
 /// ```text
-/// L = 1/n sum over passes i of  L_i,     L_i as for PhotonEye with radius r_i,      r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1)
+/// L = 1/n sum over passes i of L_i,   L_i as for PhotonEye with radius r_i
+/// r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1)
 /// ```
-/// **Consistent**: variance falls as `n^-alpha` and bias as `n^(alpha - 1)`, the mean squared error as `n^(-2/3)` with `alpha = 2/3`. Biased after
-/// finitely many passes.
+/// **Consistent**: variance falls as `n^-alpha` and bias as `n^(alpha - 1)`, the mean squared error as `n^(-2/3)` with
+/// `alpha = 2/3`, where irradiance is smooth. At its edges bias is of first order in the radius, and falls half as fast.
+/// Biased after finitely many passes.
 ///
-/// The radius is the same for all pixels and depends on the number of the pass alone: every pass is the same at any number of threads and in any order.
+/// The radius is the same for all pixels and depends on the number of the pass alone: every pass is the same at any
+/// number of threads and in any order.
 ///
 /// **Source.** C. Knaus and M. Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", 2011.
 #[derive(Clone, Copy, Debug)]

@@ -6,21 +6,24 @@ use glam::Vec3A;
 use photon_map::{CausticRule, LastBounce};
 use scene_core::{ScatterSample, TransportMode, Vertex, WalkVertex};
 
-/// Which bounces are sharp: too sharp for density estimation, so that eye paths follow them, and sharp enough to make caustics.
+/// Which bounces are sharp: too sharp for density estimation, so that eye paths follow them, and sharp enough to make
+/// caustics.
 ///
 /// ```text
 /// roughness of a bounce = 1/2 sqrt(|cos| / (pi p)),     sharp  <=>  Dirac delta, or roughness <= threshold
 /// ```
-/// **Symbols.** `p`: density by solid angle with which the surface samples the direction; the cosine is that with the shading normal.
+/// **Symbols.** `p`: density by solid angle with which the surface samples the direction; the cosine is that with the
+/// shading normal.
 ///
-/// Materials of a [`Vertex`] do not tell their roughness, but their density does: in the mirror direction of a microfacet
-/// distribution of width `alpha` it is `1 / (4 pi alpha^2)`, seen along the normal, so the formula gives `alpha` there, more in
-/// the tails of the lobe, and 1/2 on a diffuse surface. It is a function of the *pair* of directions: a coat of varnish is sharp
-/// and what is below it is not, as it should be. Any rule would do, if only those who ask agree on it:
+/// Materials of a [`Vertex`] do not tell their roughness, but their density does: in the mirror direction of a
+/// microfacet distribution of width `alpha` it is `1 / (4 pi alpha^2)`, seen along the normal, so the formula gives
+/// `alpha` there, more in the tails of the lobe, and 1/2 on a diffuse surface. It is a function of the *pair* of
+/// directions: a coat of varnish is sharp and what is below it is not, as it should be. Any rule would do, if only
+/// those who ask agree on it:
 ///
-/// - **Eye paths** go on if the direction that they sampled is sharp, and ask the maps for the photons of all other directions.
-/// - A **photon** is caustic if its last bounce was sharp, seen from the light. Final gathering leaves exactly these bounces out, which it
-///   can, because it knows where the photons at the other end came from.
+/// - **Eye paths** go on if the direction that they sampled is sharp, and ask the maps for the photons of all others.
+/// - A **photon** is caustic if its last bounce was sharp, seen from the light. Final gathering leaves exactly these
+///   bounces out, which it can, because it knows where the photons at the other end came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sharpness {
     /// The threshold.
@@ -67,7 +70,8 @@ impl Sharpness {
             && self.is_sharp(vertex.pdf_solid_angle(wi, TransportMode::Radiance), vertex.shading_normal().dot(wi))
     }
 
-    /// Whether light that arrives at `vertex` from `wi` is scattered so sharply towards `vertex.wo()` that the photon there is caustic.
+    /// Whether light that arrives at `vertex` from `wi` is scattered so sharply towards `vertex.wo()` that the photon
+    /// there is caustic.
     pub fn is_left_to_caustics<V: Vertex>(&self, vertex: &V, wi: Vec3A) -> bool {
         let pdf = || vertex.reversed(wi).pdf_solid_angle(vertex.wo(), TransportMode::Importance);
         self.may_be_glossy(vertex) && self.is_sharp(pdf(), vertex.shading_normal().dot(vertex.wo()))

@@ -18,8 +18,8 @@ use crate::render::PassContext;
 /// ```text
 /// flux_1 = L_e |cos| / (p_light p_area p_angle),    flux_(k+1) = flux_k f* |cos| / (p q)
 /// ```
-/// **Symbols.** `p`: densities of what was sampled; `q`: probability to survive Russian roulette; `f*`: adjoint BSDF. W, of one
-/// path: the maps divide by the number of paths.
+/// **Symbols.** `p`: densities of what was sampled; `q`: probability to survive Russian roulette; `f*`: adjoint BSDF.
+/// W, of one path: the maps divide by the number of paths.
 ///
 /// **Cost.** One closest hit per photon.
 #[derive(Clone, Copy, Debug)]
@@ -103,8 +103,8 @@ fn fine(sampler: &mut impl Sampler) -> f64 {
 }
 
 impl<D: Deposition + Sync> Storing<D> {
-    /// Traces the light paths of these numbers on all threads, and appends the photons that are kept, in the order of the paths. `first` is the number of
-    /// the path that counts as the first one of the partition.
+    /// Traces the light paths of these numbers on all threads, and appends the photons that are kept, in the order of
+    /// the paths. `first` is the number of the path that counts as the first one of the partition.
     ///
     /// Counts no paths: whoever has them all calls [`PhotonMaps::add_paths`].
     pub fn trace<S: Scene + Sync, F: SamplerFamily, C: EmitterChoice + Sync>(
