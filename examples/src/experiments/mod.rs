@@ -11,6 +11,7 @@
 
 mod context;
 mod many_lights;
+mod photons;
 mod report;
 mod resampling;
 mod samplers;
@@ -82,6 +83,21 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "many-lights",
         about: "figure 5 of Keller and Wald 2000: lights selected by photons, in equal time and by the number of lights",
         measure: many_lights::measure,
+    },
+    Experiment {
+        name: "importance-deposition",
+        about: "figures 1 and 2 of Keller and Wald 2000: photons are kept in the room that the camera sees",
+        measure: photons::deposition,
+    },
+    Experiment {
+        name: "caustic-split",
+        about: "figure 3 of that paper: more photons for caustics, without and with a projection map",
+        measure: photons::split,
+    },
+    Experiment {
+        name: "door-slit",
+        about: "figure 4 of that paper: a room that is lit by a slit, with photons where importance is",
+        measure: photons::slit,
     },
 ];
 
