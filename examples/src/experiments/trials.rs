@@ -66,10 +66,11 @@ impl Trials {
         self.values.iter().map(Replications::variance).sum::<f64>() / self.values.len().max(1) as f64
     }
 
-    /// The variance of a pixel's value over its squared mean plus 0.01, mean over pixels and channels.
-    pub fn relative_variance(&self) -> f64 {
-        let relative = |pixel: &Replications| pixel.variance() / (pixel.mean() * pixel.mean() + 0.01);
-        self.values.iter().map(relative).sum::<f64>() / self.values.len().max(1) as f64
+    /// The variance of a pixel's value over the squared reference plus 0.01, mean over pixels and channels. Needs a reference of the same size.
+    pub fn relative_variance(&self, reference: &[[f32; 3]]) -> f64 {
+        let relative = |(pixel, &truth): (&Replications, &f32)| pixel.variance() / (f64::from(truth).powi(2) + 0.01);
+        let sum: f64 = self.values.iter().zip(reference.iter().flatten()).map(relative).sum();
+        sum / self.values.len().max(1) as f64
     }
 
     /// The measurements of a row.

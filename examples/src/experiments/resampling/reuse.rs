@@ -38,10 +38,10 @@ struct Candidate {
 
 /// For the blob under a sky with the paper's proposals, and for many lights with those of the program: the variance times seconds of resampling
 /// with several numbers of candidates, with and without reuse, all in turn. Rays go through the centres of the pixels, so that nothing but the light
-/// varies; the variance of a pixel is that over its squared mean plus 0.01.
+/// varies; the variance of a pixel is that over its squared value plus 0.01, by path tracing.
 pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failure> {
     let mut report = context.report();
-    let size = context.effort([160, 120], [400, 300]);
+    let size = context.effort([120, 90], [400, 300]);
     let mut setups = vec![
         (Setup::builtin(context, "blob-environment", size)?, papers_proposals()),
         (Setup::builtin(context, "lantern-field", size)?, ResamplingSettings::default()),
@@ -52,6 +52,9 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         setups.extend(asset.map(|setup| (setup, ResamplingSettings::default())));
     }
     for (setup, proposals) in &setups {
+        let path = RenderSettings { max_depth: 2, filter: Filter::tent(NARROW)?, ..setup.settings.clone() };
+        let samples = context.effort(64, 256);
+        let reference = setup.render(&path, samples, context.seed_of("reference", 0))?.film.develop(0).rgb()?;
         let alone = ALONE.iter().map(|&m| candidate(setup, proposals, (0, m, true)));
         let mut all = alone.collect::<Result<Vec<Candidate>, Failure>>()?;
         for &with in &WITH_REUSE {
@@ -71,7 +74,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
                         context.save_picture(&name, &image, 0.0)?;
                     }
                 }
-                candidate.push(&trials);
+                candidate.push(&trials, &reference);
             }
         }
         report_on(setup, &all, &mut report);
@@ -80,8 +83,8 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
 }
 
 impl Candidate {
-    fn push(&mut self, trials: &Trials) {
-        let variance = trials.relative_variance();
+    fn push(&mut self, trials: &Trials, reference: &[[f32; 3]]) {
+        let variance = trials.relative_variance(reference);
         self.variance.push(variance);
         self.by_seconds.push(variance * trials.seconds().mean());
         self.by_rays.push(variance * trials.rays().mean());
