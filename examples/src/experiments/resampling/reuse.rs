@@ -10,10 +10,10 @@ use crate::program::{EstimatorName, Failure, RenderSettings};
 use crate::resampling::{DirectName, ResamplingSettings};
 
 /// Numbers of candidates for resampling alone: reuse has to beat the best of them.
-const ALONE: [f32; 3] = [4.0, 16.0, 64.0];
+const ALONE: [f32; 4] = [4.0, 16.0, 64.0, 256.0];
 /// Rounds of reuse with three neighbours each, number of candidates, and whether visibility is left out of the target.
 const WITH_REUSE: [(u32, f32, bool); 5] =
-    [(2, 8.0, true), (2, 32.0, true), (2, 8.0, false), (3, 8.0, false), (3, 32.0, false)];
+    [(2, 128.0, true), (3, 32.0, false), (4, 64.0, false), (4, 128.0, false), (5, 64.0, false)];
 /// Radius in pixels.
 const RADIUS: f32 = 6.0;
 /// Radius of the reconstruction filter, in pixels.
