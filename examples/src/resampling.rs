@@ -196,7 +196,7 @@ fn parse_candidates(text: &str) -> Result<Candidates, String> {
 }
 
 fn parse_mix(text: &str) -> Result<SourceMix, String> {
-    let parts: Vec<f32> = text.split(',').map_while(|part| part.trim().parse().ok()).collect();
+    let parts: Vec<f32> = text.split(',').map(|part| part.trim().parse().unwrap_or(f32::NAN)).collect();
     let mix = match parts[..] {
         [lights, environment, scattering] => SourceMix::new(lights, environment, scattering),
         _ => None,

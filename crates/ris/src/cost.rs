@@ -124,7 +124,7 @@ impl CostModel {
     /// The robust choice `M = T_Y / T_X`, at least 1 (P3, equation 4), for one sample.
     ///
     /// It gives candidates and samples equal time. Within any time no other choice has more than twice its `M N` and none more
-    /// than twice its `N`, so **if `e3 >= e2` in every component** its variance is at most twice the least. Where more candidates hurt
+    /// than twice its `N`, so, for real counts, **if `e3 >= e2` in every component** its variance is at most twice the least. Where more candidates hurt
     /// (`e3 < e2`) the bound fails, and `M = 1` is the choice; see [`VarianceModel`](crate::VarianceModel).
     pub fn robust(&self) -> crate::Budget {
         let ratio = self.sample / self.candidate;

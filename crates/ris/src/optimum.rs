@@ -106,11 +106,16 @@ fn norm_of_variance<const C: usize>(all: &[Expectations; C], cost: CostModel) ->
     const STEPS: u32 = 80;
     let objective = |log_m: f64| {
         let m = libm::exp(log_m);
-        norm(all, |component| component.variance(1.0 / m, 1.0)) * (m * cost.candidate + cost.sample)
+        // What remains is a variance; where an estimate of it is negative it is noise.
+        let variance = |component: &Expectations| component.reducible() / m + component.remaining().max(0.0);
+        norm(all, variance) * (m * cost.candidate + cost.sample)
     };
     let step = LARGEST / f64::from(STEPS);
     let best = (0..=STEPS)
         .fold(0, |best, k| if objective(f64::from(k) * step) < objective(f64::from(best) * step) { k } else { best });
+    if best == STEPS {
+        return f64::INFINITY;
+    }
     let (mut low, mut high) = ((f64::from(best) - 1.0).max(0.0) * step, (f64::from(best) + 1.0) * step);
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     for _ in 0..60 {

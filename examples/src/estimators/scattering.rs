@@ -14,7 +14,8 @@ use scene_core::{Frame, ScatterSample, Spectrum, TransportMode, Vertex};
 /// A way to choose directions.
 ///
 /// # Laws
-/// Those of [`Vertex::sample`], but for the density of directions that are not specular, which may be zero: unknown.
+/// Those of [`Vertex::sample`], but for two numbers of directions that are not specular: the density may be zero, unknown, and `eta` one, which makes
+/// Russian roulette less apt behind rough glass.
 pub trait ScatterSampling: Sync {
     /// A direction for a path from the sensor that has `length` segments so far, or nothing if the path is absorbed.
     fn scatter<V: Vertex>(
@@ -114,7 +115,7 @@ pub struct ResampledScattering {
 }
 
 /// The sub-streams of the candidates' numbers, one per length.
-const CANDIDATES_DOMAIN: u32 = 0x7269_7362;
+const CANDIDATES_DOMAIN: u32 = 0x6273_6466;
 
 impl ResampledScattering {
     /// A direction by resampling, with `f cos W`.

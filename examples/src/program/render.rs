@@ -210,6 +210,11 @@ fn estimate_with<S: Scene + Sync>(
     let resampling = &settings.resampling;
     let limits = PathLimits { max_depth: settings.max_depth, roulette };
     match settings.estimator {
+        // Without room for direct light there is nothing to reuse.
+        EstimatorName::RestirDirect if settings.max_depth < 2 => {
+            Job { scene, samplers, camera: &path, light: None::<&NoLightPaths>, filter, budget, threads }
+                .render(observe)
+        }
         EstimatorName::Path | EstimatorName::Direct if settings.is_plain() => {
             Job { scene, samplers, camera: &path, light: None::<&NoLightPaths>, filter, budget, threads }
                 .render(observe)

@@ -16,6 +16,8 @@ const BLOCK: usize = 64;
 /// Measures `T_X` and `T_Y` at what a few thousand primary rays hit: `T_X` is the time to draw a candidate, score it and offer it to a
 /// reservoir; `T_Y` the time to evaluate what was selected and to trace its shadow ray. In seconds.
 ///
+/// With one candidate there is nothing to select, and black ones get no shadow ray: importance sampling is cheaper than these two numbers say.
+///
 /// # Errors
 /// If too few primary rays hit something that scatters.
 pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
@@ -41,9 +43,18 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
     // Candidates and samples in turn, over the same vertices.
     let draw = |(vertex, sampler): &(S::Vertex<'_>, F::Sampler)| -> Vec<_> {
         let mut sampler = sampler.clone();
-        let source = direct.source(scene, vertex);
-        let candidates = (0..EVALUATIONS).filter_map(|_| source.propose(&mut || sampler.next_1d()));
-        candidates.map(|proposal| proposal.sample).collect()
+        let (source, target) = (direct.source(scene, vertex), direct.target(scene, vertex));
+        let mut select = || {
+            let mut reservoir = Reservoir::new();
+            for _ in 0..EVALUATIONS {
+                if let Some(proposal) = source.propose(&mut || sampler.next_1d()) {
+                    let score = target.score(&proposal.sample);
+                    reservoir.update(proposal.sample, score, 1.0 / proposal.density, sampler.next_1d());
+                }
+            }
+            reservoir.finish().selected.map(|selected| selected.sample)
+        };
+        (0..EVALUATIONS).filter_map(|_| select()).collect()
     };
     let selected: Vec<_> = vertices.iter().map(draw).collect();
     let blocks = vertices.len() / BLOCK;

@@ -38,8 +38,8 @@ impl SourceMix {
     /// emitters, or all the others).
     pub fn new(lights: f32, environment: f32, scattering: f32) -> Option<Self> {
         let sum = lights + environment + scattering;
-        let is_usable = lights > 0.0 && environment >= 0.0 && scattering >= 0.0 && sum.is_finite();
         let share = |part: f32| part / sum;
+        let is_usable = share(lights) > 0.0 && environment >= 0.0 && scattering >= 0.0 && sum.is_finite();
         is_usable.then(|| Self {
             lights: share(lights),
             environment: share(environment),
@@ -49,14 +49,14 @@ impl SourceMix {
 
     /// The same without the environment, which a scene does not have.
     fn without_environment(self) -> Self {
-        let rest = 1.0 - self.environment;
+        let rest = self.lights + self.scattering;
         Self { lights: self.lights / rest, environment: 0.0, scattering: self.scattering / rest }
     }
 
     /// The same without scattering.
     #[must_use]
     pub fn without_scattering(self) -> Self {
-        let rest = 1.0 - self.scattering;
+        let rest = self.lights + self.environment;
         Self { lights: self.lights / rest, environment: self.environment / rest, scattering: 0.0 }
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use qmc_sampling::{Independent, Replications};
-use ris::{Budget, Objective};
+use ris::{Budget, CostModel, Objective};
 use scene_core::film::LayeredImage;
 use serde_json::Value;
 
@@ -53,7 +53,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         let params = [
             ("M", Value::from(f64::from(budget.candidates))),
             ("N", f64::from(budget.samples).into()),
-            ("predicted variance", predicted(&map, budget).iter().sum::<f64>().into()),
+            ("predicted variance", (predicted(&map, budget).iter().sum::<f64>() / optimal.len() as f64).into()),
         ];
         let variances: Vec<f64> = pixels.iter().map(Replications::variance).collect();
         let variance = variances.iter().sum::<f64>() / variances.len() as f64;
@@ -62,7 +62,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         report.claims.push(agreement(budget, &variances, &predicted(&map, budget), size[0] as usize));
         measured.push(variances);
     }
-    compare(&optimal, &measured[0], &measured[1], &mut report);
+    compare(&optimal, cost, &measured[0], &measured[1], &mut report);
     Ok(report)
 }
 
@@ -85,18 +85,29 @@ fn agreement(budget: Budget, measured: &[f64], predicted: &[f64], width: usize) 
     }
 }
 
-/// Among the pixels where the two settings differ clearly: does the map say which is better? It prefers one to the other where its M is above or
-/// below that at which both have the same variance, the geometric mean of the two.
-fn compare(optimal: &[f64], few: &[f64], many: &[f64], report: &mut Report) {
-    let middle = f64::from(FEW.candidates * MANY.candidates).sqrt();
-    let clear: Vec<usize> =
-        (0..optimal.len()).filter(|&pixel| few[pixel] > 1.5 * many[pixel] || many[pixel] > 1.5 * few[pixel]).collect();
-    let right = clear.iter().filter(|&&pixel| (optimal[pixel] > middle) == (many[pixel] < few[pixel])).count() as f64;
-    let count = clear.len() as f64;
-    let share = right / count;
-    let error = 1.96 * (share * (1.0 - share) / count).sqrt();
-    let map = Ratio { value: share, ci95: [share - error, share + error] };
-    report.claims.push(at_least("figure-3-share-of-pixels-where-the-map-is-right".to_owned(), map, 0.8));
+/// Among the pixels where one of the two settings is clearly better: does the map say which? The two have the same variance where
+///
+/// ```text
+/// a/(M_1 N_1) + b/N_1 = a/(M_2 N_2) + b/N_2,     a = e3 - e2,  b = e2 - e1
+/// ```
+/// and the map's M is `sqrt(a/b T_Y/T_X)`.
+fn compare(optimal: &[f64], cost: CostModel, few: &[f64], many: &[f64], report: &mut Report) {
+    let inverse = |budget: Budget| {
+        let (m, n) = (f64::from(budget.candidates), f64::from(budget.samples));
+        (1.0 / (m * n), 1.0 / n)
+    };
+    let ((few_product, few_samples), (many_product, many_samples)) = (inverse(FEW), inverse(MANY));
+    let balance = (many_samples - few_samples) / (few_product - many_product);
+    let middle = (balance * cost.sample / cost.candidate).sqrt();
+    for (name, better, worse, prefers_many) in [("n20", few, many, false), ("m60", many, few, true)] {
+        let clear: Vec<usize> = (0..optimal.len()).filter(|&pixel| worse[pixel] > 1.5 * better[pixel]).collect();
+        let right = clear.iter().filter(|&&pixel| (optimal[pixel] > middle) == prefers_many).count() as f64;
+        let count = (clear.len() as f64).max(1.0);
+        let share = right / count;
+        let error = 1.96 * (share * (1.0 - share) / count).sqrt();
+        let share = Ratio { value: share, ci95: [share - error, share + error] };
+        report.claims.push(at_least(format!("figure-3-share-of-right-pixels-where-{name}-is-better"), share, 0.8));
+    }
     let better = many.iter().zip(few).filter(|(many, few)| many < few).count() as f64 / many.len() as f64;
     let better = Ratio { value: better, ci95: [better; 2] };
     report.claims.push(reported("figure-3-share-of-pixels-where-m60-has-less-variance".to_owned(), better));
