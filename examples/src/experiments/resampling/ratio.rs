@@ -31,7 +31,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     let samplers = Independent::new(context.seed_of("models", 0));
     let direct = resampling.resampled(&setup.scene, &samplers, None)?;
     let cost = measure_cost(&setup.scene, &samplers, &direct)?;
-    let map = models(&setup, &direct, &direct, &samplers, context.effort(512, 4096));
+    let map = models(&setup, &direct, &direct, &samplers, context.effort(1024, 4096));
     let optimal = map.candidates(POOL, cost, Objective::Weighted([1.0]));
     context.save_picture("figure-3-map", &picture(&optimal, size)?, 0.0)?;
 
