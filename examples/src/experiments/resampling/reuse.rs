@@ -21,7 +21,7 @@ const NARROW: f32 = 1e-3;
 
 /// Groups of renderings: each gives an estimate of the variance, from so many of so many samples per pixel.
 const GROUPS: u64 = 4;
-const TRIALS: u64 = 3;
+const TRIALS: u64 = 2;
 const SAMPLES: u64 = 4;
 
 struct Candidate {
