@@ -85,17 +85,7 @@ impl Ris {
                 }
                 continue;
             }
-            let mut reservoir = Reservoir::new();
-            for _ in 0..candidates {
-                match source.propose(uniform) {
-                    Some(proposal) => {
-                        let score = target.score(&proposal.sample);
-                        reservoir.update(proposal.sample, score, F::ONE / proposal.density, uniform.next_uniform());
-                    }
-                    None => reservoir.skip(),
-                }
-            }
-            if let Some(selected) = reservoir.finish().selected {
+            if let Some(selected) = Reservoir::draw(candidates, source, target, uniform).selected {
                 add(&selected.sample, selected.contribution_weight * part);
             }
         }
@@ -113,10 +103,8 @@ impl Ris {
     where
         V: Default + Add<Output = V> + Mul<F, Output = V>,
     {
-        let mut sum = Some(V::default());
-        self.for_each(source, target, uniform, |x, weight| {
-            sum = sum.take().map(|sum| sum + f(x) * weight);
-        });
-        sum.unwrap_or_default()
+        let mut sum = V::default();
+        self.for_each(source, target, uniform, |x, weight| sum = core::mem::take(&mut sum) + f(x) * weight);
+        sum
     }
 }

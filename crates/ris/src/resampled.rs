@@ -1,6 +1,6 @@
 //! What resampling returns: a sample, and the weight that makes estimates with it unbiased.
 
-use core::ops::{Add, Mul};
+use core::ops::Mul;
 
 use crate::Float;
 
@@ -72,7 +72,7 @@ impl<X, F: Float> Resampled<X, F> {
 
     /// `f(Y) W`, an estimate of the integral of `f`; `V::default()` (zero) if there is no sample, and `f` is not asked.
     #[inline]
-    pub fn estimate<V: Default + Mul<F, Output = V> + Add<Output = V>>(&self, f: impl FnOnce(&X) -> V) -> V {
+    pub fn estimate<V: Default + Mul<F, Output = V>>(&self, f: impl FnOnce(&X) -> V) -> V {
         match &self.selected {
             Some(selected) => f(&selected.sample) * selected.contribution_weight,
             None => V::default(),

@@ -2,7 +2,7 @@
 
 use crate::resampled::{Resampled, Selected};
 use crate::stream::{Chosen, Stream, candidate_weight, contribution_weight};
-use crate::{Float, OneNumber, Proposal, Target, Uniform};
+use crate::{Float, OneNumber, Proposal, Source, Target, Uniform};
 
 /// A reservoir: candidates pass through, one stays, and the estimate is unbiased.
 ///
@@ -165,6 +165,27 @@ impl<X, F: Float> Reservoir<X, F> {
             Selected { sample, score, contribution_weight }
         });
         Resampled { selected, confidence: candidates }
+    }
+
+    /// Resamples `count` candidates of a source. Each takes the numbers of its drawing first, and then one that selects.
+    #[inline]
+    pub fn draw(
+        count: u32,
+        source: &impl Source<X, F>,
+        target: &impl Target<X, F>,
+        uniform: &mut impl Uniform<F>,
+    ) -> Resampled<X, F> {
+        let mut reservoir = Self::new();
+        for _ in 0..count {
+            match source.propose(uniform) {
+                Some(Proposal { sample, density }) => {
+                    let score = target.score(&sample);
+                    reservoir.update(sample, score, F::ONE / density, uniform.next_uniform());
+                }
+                None => reservoir.skip(),
+            }
+        }
+        reservoir.finish()
     }
 
     /// Resamples a stream of candidates with a number for each.

@@ -6,7 +6,7 @@ use glam::Vec3A;
 use qmc_sampling::warp::sample_concentric_disk;
 use qmc_sampling::{Independent, Sampler, SamplerFamily};
 use rayon::prelude::*;
-use ris::{Budget, Pairwise, Proposal, Resampled, Reservoir, Source, Target};
+use ris::{Budget, Pairwise, Resampled, Reservoir};
 use scene_core::film::{Film, FilmError, FilmTile};
 use scene_core::{Counting, EmitterChoice, RayCounts, Rgb, Scene, Sharpness, Spectrum, TransportMode, Vertex};
 use smallvec::SmallVec;
@@ -207,17 +207,7 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         let source = LightSource { mix: self.direct.mix.without_scattering(), ..self.direct.source(scene, vertex) };
         let target = self.direct.target(scene, vertex);
         let count = Budget::round(self.direct.budget.candidates, &mut || numbers.next_1d());
-        let mut reservoir = Reservoir::new();
-        for _ in 0..count {
-            match source.propose(&mut || numbers.next_1d()) {
-                Some(Proposal { sample, density }) => {
-                    let score = target.score(&sample);
-                    reservoir.update(sample, score, 1.0 / density, numbers.next_1d());
-                }
-                None => reservoir.skip(),
-            }
-        }
-        let picked = reservoir.finish();
+        let picked = Reservoir::draw(count, &source, &target, &mut || numbers.next_1d());
         let seen = if self.tests_visibility { picked.kept_if(|y| y.is_visible(scene, vertex)) } else { picked };
         reusable(seen, scene, vertex)
     }

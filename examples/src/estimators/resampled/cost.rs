@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use qmc_sampling::{Sampler, SamplerFamily};
-use ris::{CostError, CostModel, Reservoir, Source, Target, seconds};
+use ris::{CostError, CostModel, Reservoir, seconds};
 use scene_core::{EmitterChoice, Scene, Sensor, Spectrum, Vertex};
 
 use super::ResampledDirect;
@@ -44,17 +44,8 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
     let draw = |(vertex, sampler): &(S::Vertex<'_>, F::Sampler)| -> Vec<_> {
         let mut sampler = sampler.clone();
         let (source, target) = (direct.source(scene, vertex), direct.target(scene, vertex));
-        let mut select = || {
-            let mut reservoir = Reservoir::new();
-            for _ in 0..EVALUATIONS {
-                if let Some(proposal) = source.propose(&mut || sampler.next_1d()) {
-                    let score = target.score(&proposal.sample);
-                    reservoir.update(proposal.sample, score, 1.0 / proposal.density, sampler.next_1d());
-                }
-            }
-            reservoir.finish().selected.map(|selected| selected.sample)
-        };
-        (0..EVALUATIONS).filter_map(|_| select()).collect()
+        let mut select = || Reservoir::draw(EVALUATIONS, &source, &target, &mut || sampler.next_1d()).selected;
+        (0..EVALUATIONS).filter_map(|_| select()).map(|selected| selected.sample).collect()
     };
     let selected: Vec<_> = vertices.iter().map(draw).collect();
     let blocks = vertices.len() / BLOCK;
@@ -65,16 +56,10 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
         for (vertex, sampler) in &vertices[block * BLOCK..(block + 1) * BLOCK] {
             let mut sampler = sampler.clone();
             let (source, target) = (direct.source(scene, vertex), direct.target(scene, vertex));
-            let mut reservoir = Reservoir::new();
-            for _ in 0..EVALUATIONS {
-                if let Some(proposal) = source.propose(&mut || sampler.next_1d()) {
-                    let score = target.score(&proposal.sample);
-                    reservoir.update(proposal.sample, score, 1.0 / proposal.density, sampler.next_1d());
-                }
-            }
-            black_box(reservoir.finish().contribution_weight());
+            let picked = Reservoir::draw(EVALUATIONS, &source, &target, &mut || sampler.next_1d());
+            black_box(picked.contribution_weight());
         }
-        BLOCK * EVALUATIONS
+        BLOCK * EVALUATIONS as usize
     };
     let samples = || {
         let Some(block) = sample_block.next() else { return 0 };
@@ -96,7 +81,7 @@ pub fn measure_cost<S: Scene, F: SamplerFamily, C: EmitterChoice>(
 }
 
 /// Candidates, and samples, at each vertex: in use there are several as well, and the first of them finds colder caches.
-const EVALUATIONS: usize = 8;
+const EVALUATIONS: u32 = 8;
 /// How often each block is timed.
 const ROUNDS: usize = 4;
 /// A stream of numbers that no pixel and no light path has.
