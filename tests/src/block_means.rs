@@ -1,12 +1,15 @@
 //! Renderings as means over blocks of pixels.
 
 use estimator_checks::BatchMeans;
+use lichtwerk::estimators::NoLightPaths;
 use lichtwerk::program::{RenderSettings, estimate};
-use lichtwerk::render::{Budget, Rendering};
+use lichtwerk::render::{Budget, CameraPass, Job, Rendering};
+use qmc_sampling::SamplerFamily;
 use scene_core::Scene;
+use scene_core::film::Filter;
 
 /// How much to render.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
     /// Samples per pixel of a batch.
     pub samples: u64,
@@ -52,6 +55,21 @@ pub fn means_of(name: &str, effort: Effort, render: impl Fn(u64) -> Rendering) -
             .expect("all batches have the same size");
     }
     means.unwrap_or_else(|| BatchMeans::new(0))
+}
+
+/// Renders with a camera pass that the program does not offer: on one thread, each pixel the mean over its square.
+///
+/// # Panics
+/// If the image cannot be rendered.
+pub fn render_by<S: Scene + Sync>(
+    scene: &S,
+    camera: &impl CameraPass,
+    samplers: &impl SamplerFamily,
+    samples: u64,
+) -> Rendering {
+    let (filter, budget) = (Filter::BOX, Budget::Samples(samples));
+    let job = Job { scene, samplers, camera, light: None::<&NoLightPaths>, filter, budget, threads: 1 };
+    job.render(|_| std::ops::ControlFlow::Continue(())).expect("a scene with a size")
 }
 
 /// The means of the blocks of `block * block` pixels and of the whole image, channel by channel.

@@ -8,14 +8,13 @@ use std::ops::ControlFlow;
 
 use estimator_checks::{BatchMeans, Suite};
 use lichtwerk::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use lichtwerk::estimators::{FirstEvent, NextEvent, NoLightPaths, OwnSampling, PathTracer};
+use lichtwerk::estimators::{FirstEvent, NextEvent, OwnSampling, PathTracer};
 use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName, estimate};
-use lichtwerk::render::{Budget, Job};
+use lichtwerk::render::Budget;
 use lichtwerk_tests::planted::{Liar, OneMode, Unnormalised};
-use lichtwerk_tests::{Effort, block_means, means_of, scenes};
+use lichtwerk_tests::{Effort, block_means, both_forms, means_of, render_by, scenes};
 use mis_heuristics::{Balance, Heuristic};
 use qmc_sampling::Independent;
-use scene_core::film::Filter;
 use scene_core::{
     EmitterChoice, PowerChoice, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription, UniformChoice,
 };
@@ -51,27 +50,6 @@ fn path_equals_path(test: &str, settings: &RenderSettings, effort: Effort) {
     let a = render(test, "path", &scene, &path(), effort);
     let b = render(test, "variant", &scene, settings, effort);
     println!("{}", a.agrees_with(SUITE.check(test), &b).expect_pass());
-}
-
-/// One test, in a quick and a long form.
-macro_rules! both_forms {
-    ($($name:ident => $test:expr;)*) => {
-        mod quick {
-            use super::*;
-            $(#[test]
-            fn $name() {
-                $test(concat!(stringify!($name)), Effort::QUICK);
-            })*
-        }
-        mod long {
-            use super::*;
-            $(#[test]
-            #[ignore = "long form: cargo test --release --workspace -- --ignored"]
-            fn $name() {
-                $test(concat!(stringify!($name), " (long)"), Effort::LONG);
-            })*
-        }
-    };
 }
 
 both_forms! {
@@ -251,16 +229,7 @@ where
             roulette,
             first_event: FirstEvent::Any,
         };
-        let job = Job {
-            scene,
-            samplers: &Independent::new(seed),
-            camera: &camera,
-            light: None::<&NoLightPaths>,
-            filter: Filter::BOX,
-            budget: Budget::Samples(Effort::QUICK.samples),
-            threads: 1,
-        };
-        job.render(|_| ControlFlow::Continue(())).unwrap()
+        render_by(scene, &camera, &Independent::new(seed), Effort::QUICK.samples)
     })
 }
 

@@ -5,16 +5,15 @@
 
 use std::ops::ControlFlow;
 
-use estimator_checks::{BatchMeans, Suite};
+use estimator_checks::Suite;
 use lichtwerk::choices::LightSelection;
-use lichtwerk::estimators::{DirectLight, FirstEvent, NoLightPaths, OwnSampling, PathTracer, PhotonLights, Scattered};
+use lichtwerk::estimators::{DirectLight, FirstEvent, OwnSampling, PathTracer, PhotonLights, Scattered};
 use lichtwerk::light_photons::{AllocationName, ImportanceName, LightPhotonSettings};
 use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName, estimate};
-use lichtwerk::render::{Budget, Job, Rendering};
+use lichtwerk::render::{Budget, Rendering};
 use lichtwerk::resampling::{ResamplingSettings, ScatteringName};
-use lichtwerk_tests::{Effort, block_means, means_of, scenes};
+use lichtwerk_tests::{Effort, Truth, block_means, both_forms, means_of, render_by, scenes};
 use qmc_sampling::{Independent, Sampler};
-use scene_core::film::Filter;
 use scene_core::{EmitterId, Ray, ReferenceScene, RussianRoulette, Scene, SceneDescription, SurfacePoint, builtin};
 
 /// Quick and long forms count: both may run.
@@ -83,37 +82,15 @@ fn choices() -> [(&'static str, LightPhotonSettings); 6] {
     ]
 }
 
-/// A scene with an image that is known to be right.
-struct Truth {
-    test: String,
-    scene: ReferenceScene,
-    means: BatchMeans,
-    effort: Effort,
-}
-
-impl Truth {
-    fn new(test: &str, description: SceneDescription, settings: &RenderSettings, effort: Effort) -> Self {
-        let scene = scenes::build(description);
-        let means = block_means(&format!("{test}: truth"), &scene, settings, effort);
-        Self { test: test.to_owned(), scene, means, effort }
-    }
-
-    fn equals(&self, what: &str, settings: &RenderSettings) {
-        let name = format!("{}: {what}", self.test);
-        let means = block_means(&name, &self.scene, settings, self.effort);
-        println!("{}", self.means.agrees_with(SUITE.check(&name), &means).expect_pass());
-    }
-}
-
 fn direct_light(test: &str, description: SceneDescription, effort: Effort) {
-    let truth = Truth::new(test, description, &direct(), effort);
+    let truth = Truth::new(&SUITE, test, scenes::build(description), &direct(), effort);
     for (what, light_photons) in choices() {
         truth.equals(what, &by_photons(light_photons, direct()));
     }
 }
 
 fn whole_paths(test: &str, description: SceneDescription, effort: Effort) {
-    let truth = Truth::new(test, description, &path(), effort);
+    let truth = Truth::new(&SUITE, test, scenes::build(description), &path(), effort);
     let [(default, as_it_comes), (few, few_photons), ..] = choices();
     truth.equals(default, &by_photons(as_it_comes.clone(), path()));
     truth.equals(few, &by_photons(few_photons, path()));
@@ -123,27 +100,6 @@ fn whole_paths(test: &str, description: SceneDescription, effort: Effort) {
         ..ResamplingSettings::default()
     };
     truth.equals("with resampled directions", &by_photons(as_it_comes, RenderSettings { resampling, ..path() }));
-}
-
-/// One test, in a quick and a long form.
-macro_rules! both_forms {
-    ($($name:ident => $test:expr;)*) => {
-        mod quick {
-            use super::*;
-            $(#[test]
-            fn $name() {
-                $test(concat!(stringify!($name)), Effort::QUICK);
-            })*
-        }
-        mod long {
-            use super::*;
-            $(#[test]
-            #[ignore = "long form: cargo test --release --workspace -- --ignored"]
-            fn $name() {
-                $test(concat!(stringify!($name), " (long)"), Effort::LONG);
-            })*
-        }
-    };
 }
 
 both_forms! {
@@ -166,7 +122,7 @@ fn without_rays_to_others_light_that_photons_missed_is_lost() {
     };
     for (test, description) in [("no other rays in rooms", rooms()), ("no other rays in the studio", scenes::studio())]
     {
-        let truth = Truth::new(test, description, &direct(), Effort::QUICK);
+        let truth = Truth::new(&SUITE, test, scenes::build(description), &direct(), Effort::QUICK);
         let means =
             block_means(&format!("{test}: biased"), &truth.scene, &by_photons(few.clone(), direct()), truth.effort);
         println!("{}", truth.means.agrees_with(SUITE.twin(test), &means).expect_reject());
@@ -203,7 +159,7 @@ impl DirectLight for CountsTwice {
 #[test]
 fn counting_light_twice_is_rejected() {
     let test = "light that scattering finds counts twice";
-    let truth = Truth::new(test, rooms(), &direct(), Effort::QUICK);
+    let truth = Truth::new(&SUITE, test, scenes::build(rooms()), &direct(), Effort::QUICK);
     let scene = &truth.scene;
     let settings = LightPhotonSettings::default();
     let photons = PhotonLights::trace(scene, &Independent::new(0), &settings).unwrap().unwrap();
@@ -214,18 +170,7 @@ fn counting_light_twice_is_rejected() {
         roulette: RussianRoulette::Never,
         first_event: FirstEvent::Any,
     };
-    let render = |seed: u64| {
-        let job = Job {
-            scene,
-            samplers: &Independent::new(seed),
-            camera: &camera,
-            light: None::<&NoLightPaths>,
-            filter: Filter::BOX,
-            budget: Budget::Samples(Effort::QUICK.samples),
-            threads: 1,
-        };
-        job.render(|_| ControlFlow::Continue(())).unwrap()
-    };
+    let render = |seed| render_by(scene, &camera, &Independent::new(seed), Effort::QUICK.samples);
     let means = means_of(test, Effort::QUICK, render);
     println!("{}", truth.means.agrees_with(SUITE.twin(test), &means).expect_reject());
 }

@@ -6,28 +6,24 @@ use std::ops::{ControlFlow, Range};
 
 use estimator_checks::{BatchMeans, Moments, Suite, Truth, slope_is};
 use lichtwerk::estimators::{
-    DirectLight, Maps, NextEvent, NoLightPaths, PhotonMapping, PhotonView, ProgressivePhotons, Scattered, Sharpness,
-    Storing,
+    DirectLight, Maps, NextEvent, PhotonMapping, PhotonView, ProgressivePhotons, Sharpness, Storing,
 };
 use lichtwerk::light_paths::LightPathSettings;
 use lichtwerk::photons::{DepositionName, PartitionVariant, PathLimits, PhotonSettings, Radius};
 use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
-use lichtwerk::render::{Budget, CameraPass, Job, PassContext, PassCounts, Rendering};
+use lichtwerk::render::{Budget, CameraPass, PassContext, PassCounts, Rendering};
 use lichtwerk::samplers::SamplerName;
-use lichtwerk_tests::{Effort, block_means, means_of, scenes};
+use lichtwerk_tests::{Effort, block_means, means_of, render_by, scenes};
 use mis_heuristics::Power;
 use photon_map::{
     CausticRule, DensityEstimation, Gather, KeepAll, Kernel, MapPartition, PhotonMaps, ProgressiveRadius,
 };
 use qmc_sampling::{Independent, Sampler, SamplerFamily};
 use scene_core::builtin::SceneBuilder;
-use scene_core::film::{Film, FilmError, Filter};
+use scene_core::film::{Film, FilmError};
 use scene_core::glam::Vec3A;
 use scene_core::material::Material;
-use scene_core::{
-    EmitterChoice, EmitterId, PowerChoice, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription,
-    Spectrum, SurfacePoint,
-};
+use scene_core::{EmitterChoice, PowerChoice, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription, Spectrum};
 
 static SUITE: Suite = Suite::with_share("workspace photon maps", 24, 2e-8);
 
@@ -87,17 +83,6 @@ impl DirectLight for NoDirectLight {
     fn sample<S: Scene>(&self, _: &S, _: &S::Vertex<'_>, _: u32, _: bool, _: &mut impl Sampler) -> S::Spectrum {
         S::Spectrum::ZERO
     }
-
-    fn scattering_weight<S: Scene>(
-        &self,
-        _: &S,
-        _: Scattered<'_>,
-        _: &Ray,
-        _: EmitterId,
-        _: Option<&SurfacePoint>,
-    ) -> f32 {
-        0.0
-    }
 }
 
 fn limits() -> PathLimits {
@@ -116,10 +101,7 @@ fn progressive(scene: &ReferenceScene, paths: u64) -> Progressive {
 
 /// Independent numbers: the laws of variance are theirs.
 fn render(scene: &ReferenceScene, camera: &impl CameraPass, passes: u64, seed: u64) -> Rendering {
-    let (samplers, budget, filter) = (Independent::new(seed), Budget::Samples(passes), Filter::BOX);
-    Job { scene, samplers: &samplers, camera, light: None::<&NoLightPaths>, filter, budget, threads: 1 }
-        .render(|_| ControlFlow::Continue(()))
-        .unwrap()
+    render_by(scene, camera, &Independent::new(seed), passes)
 }
 
 fn pixels(rendering: &Rendering) -> Vec<f64> {

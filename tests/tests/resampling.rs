@@ -6,21 +6,19 @@
 
 use std::ops::ControlFlow;
 
-use estimator_checks::{BatchMeans, Suite};
+use estimator_checks::Suite;
 use lichtwerk::choices::{AnyChoice, LightSelection};
 use lichtwerk::estimators::{
-    DirectLight, EnvironmentSampling, FirstEvent, NoLightPaths, OwnSampling, PathTracer, ResampledDirect, Scattered,
-    SourceMix, TargetName,
+    DirectLight, EnvironmentSampling, FirstEvent, OwnSampling, PathTracer, ResampledDirect, SourceMix, TargetName,
 };
 use lichtwerk::light_paths::LightPathSettings;
 use lichtwerk::program::{EstimatorName, RenderSettings};
-use lichtwerk::render::{Budget, Job};
+use lichtwerk::render::Budget;
 use lichtwerk::resampling::{Candidates, DirectName, ResamplingSettings, ScatteringName};
-use lichtwerk_tests::{Effort, block_means, means_of, scenes};
+use lichtwerk_tests::{Effort, Truth, both_forms, means_of, render_by, scenes};
 use qmc_sampling::{Independent, Sampler};
 use ris::{Reservoir, Source, Target};
-use scene_core::film::Filter;
-use scene_core::{EmitterId, Ray, ReferenceScene, RussianRoulette, Scene, SceneDescription, Spectrum, SurfacePoint};
+use scene_core::{RussianRoulette, Scene, SceneDescription, Spectrum};
 
 /// Quick and long forms count: both may run.
 static SUITE: Suite = Suite::with_share("workspace resampling", 80, 5e-8);
@@ -47,31 +45,9 @@ fn reuse(rounds: u32, resampling: ResamplingSettings) -> RenderSettings {
     RenderSettings { estimator: EstimatorName::RestirDirect, ..with(resampling) }
 }
 
-/// A scene with an image that is known to be right.
-struct Truth {
-    test: String,
-    scene: ReferenceScene,
-    means: BatchMeans,
-    effort: Effort,
-}
-
-impl Truth {
-    fn new(test: &str, description: SceneDescription, settings: &RenderSettings, effort: Effort) -> Self {
-        let scene = scenes::build(description);
-        let means = block_means(&format!("{test}: truth"), &scene, settings, effort);
-        Self { test: test.to_owned(), scene, means, effort }
-    }
-
-    fn equals(&self, what: &str, settings: &RenderSettings) {
-        let name = format!("{}: {what}", self.test);
-        let means = block_means(&name, &self.scene, settings, self.effort);
-        println!("{}", self.means.agrees_with(SUITE.check(&name), &means).expect_pass());
-    }
-}
-
 /// Every target with every mixture of sources, M and N fractional too.
 fn direct_light(test: &str, description: SceneDescription, effort: Effort) {
-    let truth = Truth::new(test, description, &direct(), effort);
+    let truth = Truth::new(&SUITE, test, scenes::build(description), &direct(), effort);
     let mixtures = [("lights", mix(1.0, 0.0, 0.0)), ("mixed", mix(2.0, 1.0, 1.0))];
     let targets = [TargetName::Unshadowed, TargetName::GeometryVisibility, TargetName::GuessedVisibility];
     for (k, target) in targets.into_iter().enumerate() {
@@ -96,7 +72,7 @@ fn direct_light(test: &str, description: SceneDescription, effort: Effort) {
 
 fn whole_paths(test: &str, description: SceneDescription, has_points: bool, effort: Effort) {
     let path = RenderSettings { max_depth: 5, ..RenderSettings::new(Budget::Samples(0)) };
-    let truth = Truth::new(test, description, &path, effort);
+    let truth = Truth::new(&SUITE, test, scenes::build(description), &path, effort);
     let of = |resampling: ResamplingSettings| RenderSettings { resampling, ..path.clone() };
     truth.equals("direct light by resampling", &of(resampled(3.5, 1.0)));
     let by_ris = ResamplingSettings {
@@ -116,33 +92,12 @@ fn whole_paths(test: &str, description: SceneDescription, has_points: bool, effo
 fn connections(test: &str, description: SceneDescription, effort: Effort) {
     let light_paths = LightPathSettings { light_paths: 2, interleave: None, ..LightPathSettings::default() };
     let path = RenderSettings { max_depth: 5, light_paths, ..RenderSettings::new(Budget::Samples(0)) };
-    let truth = Truth::new(test, description, &path, effort);
+    let truth = Truth::new(&SUITE, test, scenes::build(description), &path, effort);
     let mut settings = RenderSettings { estimator: EstimatorName::Bdpt, ..path };
     for rays in [1, 3] {
         settings.light_paths.resampled_connections = Some(rays);
         truth.equals(&format!("{rays} rays per path"), &settings);
     }
-}
-
-/// One test, in a quick and a long form.
-macro_rules! both_forms {
-    ($($name:ident => $test:expr;)*) => {
-        mod quick {
-            use super::*;
-            $(#[test]
-            fn $name() {
-                $test(concat!(stringify!($name)), Effort::QUICK);
-            })*
-        }
-        mod long {
-            use super::*;
-            $(#[test]
-            #[ignore = "long form: cargo test --release --workspace -- --ignored"]
-            fn $name() {
-                $test(concat!(stringify!($name), " (long)"), Effort::LONG);
-            })*
-        }
-    };
 }
 
 both_forms! {
@@ -185,51 +140,27 @@ impl DirectLight for CountsOnlyThePositive<'_> {
             _ => S::Spectrum::ZERO,
         }
     }
-
-    fn scattering_weight<S: Scene>(
-        &self,
-        _: &S,
-        _: Scattered<'_>,
-        _: &Ray,
-        _: EmitterId,
-        _: Option<&SurfacePoint>,
-    ) -> f32 {
-        0.0
-    }
 }
 
 #[test]
 fn counting_only_positive_candidates_is_rejected() {
     let test = "only positive candidates count";
-    let truth = Truth::new(test, scenes::environment_map(), &direct(), Effort::QUICK);
+    let truth = Truth::new(&SUITE, test, scenes::build(scenes::environment_map()), &direct(), Effort::QUICK);
     let paper = ResamplingSettings {
         candidate_mix: mix(1.0, 0.0, 0.0),
         environment_candidates: EnvironmentSampling::Uniform,
         ..resampled(4.0, 1.0)
     };
     let scene = &truth.scene;
-    let direct = paper.resampled(scene, &Independent::new(0), None).unwrap();
-    let render = |direct: &CountsOnlyThePositive<'_>, seed: u64| {
-        let camera = PathTracer {
-            direct: CountsOnlyThePositive(direct.0.clone()),
-            scattering: OwnSampling,
-            max_depth: 2,
-            roulette: RussianRoulette::Never,
-            first_event: FirstEvent::Any,
-        };
-        let job = Job {
-            scene,
-            samplers: &Independent::new(seed),
-            camera: &camera,
-            light: None::<&NoLightPaths>,
-            filter: Filter::BOX,
-            budget: Budget::Samples(Effort::QUICK.samples),
-            threads: 1,
-        };
-        job.render(|_| ControlFlow::Continue(())).unwrap()
+    let camera = PathTracer {
+        direct: CountsOnlyThePositive(paper.resampled(scene, &Independent::new(0), None).unwrap()),
+        scattering: OwnSampling,
+        max_depth: 2,
+        roulette: RussianRoulette::Never,
+        first_event: FirstEvent::Any,
     };
-    let planted = CountsOnlyThePositive(direct);
-    let means = means_of(test, Effort::QUICK, |seed| render(&planted, seed));
+    let render = |seed| render_by(scene, &camera, &Independent::new(seed), Effort::QUICK.samples);
+    let means = means_of(test, Effort::QUICK, render);
     println!("{}", truth.means.agrees_with(SUITE.twin(test), &means).expect_reject());
 }
 

@@ -4,15 +4,13 @@
 //! randomisation of all sequences. The filter is wider than a pixel, so that the place in the pixel is put to use.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::ops::ControlFlow;
-
 use estimator_checks::{BatchMeans, Suite};
 use lichtwerk::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use lichtwerk::estimators::{FirstEvent, NextEvent, NoLightPaths, OwnSampling, PathTracer};
+use lichtwerk::estimators::{FirstEvent, NextEvent, OwnSampling, PathTracer};
 use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName};
-use lichtwerk::render::{Budget, Job};
+use lichtwerk::render::Budget;
 use lichtwerk_tests::planted::{FewDimensions, PlaceInImage};
-use lichtwerk_tests::{Effort, block_means, means_of, scenes};
+use lichtwerk_tests::{Effort, block_means, means_of, render_by, scenes};
 use qmc_sampling::{OwenSobol, SamplerFamily};
 use scene_core::film::Filter;
 use scene_core::{ReferenceScene, RussianRoulette, Scene};
@@ -68,18 +66,7 @@ fn path_by<F: SamplerFamily>(name: &str, family: impl Fn(u64) -> F) -> BatchMean
         roulette: RussianRoulette::PathThroughput { from_length: settings.rr_depth - 1 },
         first_event: FirstEvent::Any,
     };
-    means_of(name, Effort::QUICK, |seed| {
-        let job = Job {
-            scene: &scene,
-            samplers: &family(seed),
-            camera: &camera,
-            light: None::<&NoLightPaths>,
-            filter: settings.filter,
-            budget: Budget::Samples(Effort::QUICK.samples),
-            threads: 1,
-        };
-        job.render(|_| ControlFlow::Continue(())).unwrap()
-    })
+    means_of(name, Effort::QUICK, |seed| render_by(&scene, &camera, &family(seed), Effort::QUICK.samples))
 }
 
 #[test]

@@ -5,15 +5,15 @@
 
 use std::ops::ControlFlow;
 
-use estimator_checks::{BatchMeans, Suite};
+use estimator_checks::Suite;
 use lichtwerk::light_paths::{LightPathSettings, PartitionName};
 use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
 use lichtwerk::render::{Budget, Rendering};
 use lichtwerk_tests::planted::AllDiffuse;
-use lichtwerk_tests::{Effort, assets, block_means, scenes};
+use lichtwerk_tests::{Effort, Truth, assets, block_means, both_forms, scenes};
 use qmc_sampling::Interleaved;
 use scene_core::builtin::Builtin;
-use scene_core::{ReferenceScene, Scene, SceneDescription};
+use scene_core::{ReferenceScene, Scene};
 use vpl_gi::{ShadowRays, Threshold};
 
 /// Quick and long forms count: both may run.
@@ -39,101 +39,61 @@ fn robust(threshold: f32, partition: PartitionName, interleaved: bool) -> Render
 }
 
 /// A scene with its image by path tracing.
-struct Truth<S> {
-    test: String,
-    scene: S,
-    path: BatchMeans,
-    effort: Effort,
+fn by_path<S: Scene + Sync>(test: &str, scene: S, effort: Effort) -> Truth<S> {
+    Truth::new(&SUITE, test, scene, &path(), effort)
 }
 
-impl<S: Scene + Sync> Truth<S> {
-    fn new(test: &str, scene: S, effort: Effort) -> Self {
-        let path = block_means(&format!("{test}: path"), &scene, &path(), effort);
-        Self { test: test.to_owned(), scene, path, effort }
-    }
-
-    fn means(&self, what: &str, settings: &RenderSettings) -> BatchMeans {
-        block_means(&format!("{}: {what}", self.test), &self.scene, settings, self.effort)
-    }
-
-    fn equals(&self, what: &str, settings: &RenderSettings) {
-        let check = SUITE.check(&format!("{}: {what}", self.test));
-        println!("{}", self.path.agrees_with(check, &self.means(what, settings)).expect_pass());
-    }
-
-    fn rejects(&self, what: &str, settings: &RenderSettings) {
-        let twin = SUITE.twin(&format!("{}: {what}", self.test));
-        println!("{}", self.path.agrees_with(twin, &self.means(what, settings)).expect_reject());
-    }
-
-    /// Every threshold, hard and soft, with light paths of one's own and shared (if not `both`, in turn).
-    fn equals_everywhere(&self, thresholds: &[f32], both: bool) {
-        for (k, &threshold) in thresholds.iter().enumerate() {
-            for partition in [PartitionName::Hard, PartitionName::Soft] {
-                for interleaved in [true, false].into_iter().filter(|&shared| both || shared == (k % 2 == 0)) {
-                    let what = format!("{partition:?} {threshold}, interleaved {interleaved}");
-                    self.equals(&what, &robust(threshold, partition, interleaved));
-                }
+/// Every threshold, hard and soft, with light paths of one's own and shared; in the long form these two in turn.
+fn equal_everywhere<S: Scene + Sync>(truth: &Truth<S>, thresholds: &[f32]) {
+    let both = is_quick(truth.effort);
+    for (k, &threshold) in thresholds.iter().enumerate() {
+        for partition in [PartitionName::Hard, PartitionName::Soft] {
+            for interleaved in [true, false].into_iter().filter(|&shared| both || shared == (k % 2 == 0)) {
+                let what = format!("{partition:?} {threshold}, interleaved {interleaved}");
+                truth.equals(&what, &robust(threshold, partition, interleaved));
             }
         }
     }
 }
 
-/// One test, in a quick and a long form.
-macro_rules! both_forms {
-    ($($name:ident => $test:expr;)*) => {
-        mod quick {
-            use super::*;
-            $(#[test]
-            fn $name() {
-                $test(concat!(stringify!($name)), Effort::QUICK, true);
-            })*
-        }
-        mod long {
-            use super::*;
-            $(#[test]
-            #[ignore = "long form: cargo test --release --workspace -- --ignored"]
-            fn $name() {
-                $test(concat!(stringify!($name), " (long)"), Effort::LONG, false);
-            })*
-        }
-    };
+fn is_quick(effort: Effort) -> bool {
+    effort == Effort::QUICK
 }
 
 /// The quick forms take fewer thresholds where the scene is not the Cornell box.
-fn equal_on(test: &str, description: SceneDescription, effort: Effort, quick: bool) {
-    let thresholds: &[f32] = if quick { &[10.0] } else { &THRESHOLDS };
-    Truth::new(test, scenes::build(description), effort).equals_everywhere(thresholds, quick);
+fn equal_on<S: Scene + Sync>(test: &str, scene: S, effort: Effort) {
+    let thresholds: &[f32] = if is_quick(effort) { &[10.0] } else { &THRESHOLDS };
+    equal_everywhere(&by_path(test, scene, effort), thresholds);
 }
 
 both_forms! {
-    robust_equals_path_in_the_cornell_box => |test, effort, quick| {
-        Truth::new(test, scenes::build(scenes::cornell_box()), effort).equals_everywhere(&THRESHOLDS, quick);
+    robust_equals_path_in_the_cornell_box => |test, effort| {
+        equal_everywhere(&by_path(test, scenes::build(scenes::cornell_box()), effort), &THRESHOLDS);
     };
-    robust_equals_path_on_rough_materials => |test, effort, quick| equal_on(test, scenes::rough_materials(), effort, quick);
-    robust_equals_path_through_glass => |test, effort, quick| equal_on(test, scenes::glass_ball(), effort, quick);
-    robust_equals_path_with_bent_normals => |test, effort, quick| equal_on(test, scenes::bent_normals(), effort, quick);
-    robust_equals_path_in_an_environment => |test, effort, quick| equal_on(test, scenes::environment_map(), effort, quick);
-    robust_equals_path_with_lens_and_masks => |test, effort, quick| equal_on(test, scenes::lens_and_masks(), effort, quick);
-    robust_equals_path_in_the_studio => |test, effort, quick| equal_on(test, scenes::studio(), effort, quick);
-    robust_equals_path_from_delta_lights => |test, effort, quick| equal_on(test, scenes::delta_lights(), effort, quick);
-    robust_equals_path_in_the_office => |test, effort, quick| {
+    robust_equals_path_on_rough_materials => |test, effort| equal_on(test, scenes::build(scenes::rough_materials()), effort);
+    robust_equals_path_through_glass => |test, effort| equal_on(test, scenes::build(scenes::glass_ball()), effort);
+    robust_equals_path_with_bent_normals => |test, effort| equal_on(test, scenes::build(scenes::bent_normals()), effort);
+    robust_equals_path_in_an_environment => |test, effort| equal_on(test, scenes::build(scenes::environment_map()), effort);
+    robust_equals_path_with_lens_and_masks => |test, effort| equal_on(test, scenes::build(scenes::lens_and_masks()), effort);
+    robust_equals_path_in_the_studio => |test, effort| equal_on(test, scenes::build(scenes::studio()), effort);
+    robust_equals_path_from_delta_lights => |test, effort| equal_on(test, scenes::build(scenes::delta_lights()), effort);
+    robust_equals_path_in_the_office => |test, effort| {
         let Some(office) = Builtin::named("office") else { panic!("no office") };
-        equal_on(test, scenes::resized(office.description(), scenes::SIZE, scenes::SIZE), effort, quick);
+        let office = scenes::resized(office.description(), scenes::SIZE, scenes::SIZE);
+        equal_on(test, scenes::build(office), effort);
     };
-    robust_equals_path_in_the_modern_hall => |test, effort, quick: bool| {
+    robust_equals_path_in_the_modern_hall => |test, effort| {
         let Some(description) = assets::modern_hall() else { return };
         // Some of its triangles have no area, which is a warning.
         let scene = ReferenceScene::new(scenes::resized(description, scenes::SIZE, scenes::SIZE)).unwrap();
-        let thresholds: &[f32] = if quick { &[10.0] } else { &THRESHOLDS };
-        Truth::new(test, scene, effort).equals_everywhere(thresholds, quick);
+        equal_on(test, scene, effort);
     };
 }
 
 /// The other two partitions, final gathering, and fewer shadow rays change no expectation.
 #[test]
 fn variants_equal_path() {
-    let truth = Truth::new("variants", scenes::build(scenes::studio()), Effort::QUICK);
+    let truth = by_path("variants", scenes::build(scenes::studio()), Effort::QUICK);
     for partition in [PartitionName::Balance, PartitionName::Distance] {
         truth.equals(&format!("{partition:?}"), &robust(10.0, partition, true));
     }
@@ -153,7 +113,7 @@ fn variants_equal_path() {
 /// What is lost in corners, and behind glass, is found missing.
 #[test]
 fn planted_bugs_are_rejected() {
-    let truth = Truth::new("planted", scenes::build(scenes::cornell_box()), Effort::QUICK);
+    let truth = by_path("planted", scenes::build(scenes::cornell_box()), Effort::QUICK);
     let dropped = |threshold, partition| RenderSettings {
         estimator: EstimatorName::InstantRadiosity,
         ..robust(threshold, partition, true)
@@ -167,11 +127,11 @@ fn planted_bugs_are_rejected() {
     truth.equals("instant radiosity", &dropped(f32::INFINITY, PartitionName::Hard));
 
     // Rays that end at the partition's reach miss the glass behind.
-    let truth = Truth::new("planted in glass", scenes::build(scenes::glass_ball()), Effort::QUICK);
+    let truth = by_path("planted in glass", scenes::build(scenes::glass_ball()), Effort::QUICK);
     let settings = robust(1000.0, PartitionName::Hard, true);
     let wrong =
         block_means("rays too short", &AllDiffuse(scenes::build(scenes::glass_ball())), &settings, truth.effort);
-    println!("{}", truth.path.agrees_with(SUITE.twin("rays too short"), &wrong).expect_reject());
+    println!("{}", truth.means.agrees_with(SUITE.twin("rays too short"), &wrong).expect_reject());
 }
 
 fn render<S: Scene + Sync>(scene: &S, settings: &RenderSettings, threads: usize) -> Rendering {
