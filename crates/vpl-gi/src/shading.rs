@@ -166,7 +166,7 @@ where
         LightKind::Distant { towards, .. } => x.spawn_ray(*towards),
         LightKind::Delta { emitter } => {
             match scene.emitters()[emitter.index()].sample_direct(x.point().position, CENTRE) {
-                Some(direct) => direct.at.map_or_else(|| x.spawn_ray(direct.wi), |(at, _)| x.point().ray_to(&at)),
+                Some(direct) => direct.shadow_ray(x),
                 None => Ray::new(x.point().position, x.wo()).up_to(0.0),
             }
         }

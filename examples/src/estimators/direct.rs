@@ -35,7 +35,9 @@ pub trait DirectLight: Sync {
         sampler: &mut impl Sampler,
     ) -> S::Spectrum;
 
-    /// The share of light of emitter `id` that `ray`, scattered at `from`, hits `at` this point (`None`: at infinity).
+    /// The share of light of emitter `id` that `ray`, scattered at `from`, hits `at` this point (`None`: at infinity). None by default: all
+    /// direct light is found by [`sample`](Self::sample).
+    #[inline]
     fn scattering_weight<S: Scene>(
         &self,
         scene: &S,
@@ -43,7 +45,30 @@ pub trait DirectLight: Sync {
         ray: &Ray,
         id: EmitterId,
         at: Option<&SurfacePoint>,
-    ) -> f32;
+    ) -> f32 {
+        let _ = (scene, from, ray, id, at);
+        0.0
+    }
+
+    /// The share of what emitters send along `ray` that is left to it: all if it did not leave by a scattering that other techniques could have
+    /// generated. `hit` is what the ray hit, `factor` multiplies.
+    #[inline]
+    fn emission<S: Scene>(
+        &self,
+        scene: &S,
+        ray: &Ray,
+        hit: Option<&S::Vertex<'_>>,
+        from: Option<Scattered<'_>>,
+        factor: S::Spectrum,
+    ) -> S::Spectrum {
+        let Some(id) = hit.map_or_else(|| scene.environment(), Vertex::emitter) else { return S::Spectrum::ZERO };
+        let emitted = hit.map_or_else(|| scene.environment_radiance(ray.direction), Vertex::emitted);
+        if emitted.is_black() {
+            return emitted;
+        }
+        let weight = from.map_or(1.0, |from| self.scattering_weight(scene, from, ray, id, hit.map(Vertex::point)));
+        factor * emitted * weight
+    }
 }
 
 /// Next event estimation: one emitter is chosen, one point on it, and one shadow ray is traced; combined with scattering by a heuristic.
@@ -90,11 +115,7 @@ impl<H: Heuristic<f32> + Sync, C: EmitterChoice + Sync> DirectLight for NextEven
         if value.is_black() {
             return unlit;
         }
-        let shadow_ray = match &light.at {
-            Some((at, _)) => point.ray_to(at),
-            None => vertex.spawn_ray(light.wi),
-        };
-        if scene.occluded(&shadow_ray) { unlit } else { value }
+        if scene.occluded(&light.shadow_ray(vertex)) { unlit } else { value }
     }
 
     #[inline]

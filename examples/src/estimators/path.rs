@@ -62,21 +62,9 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
             let from = last.as_ref().map(|(point, pdf)| Scattered { point, pdf_solid_angle: *pdf });
 
             // Light found by scattering (or seen directly).
-            let Some(vertex) = scene.intersect(&ray) else {
-                if let Some(id) = scene.environment() {
-                    let weight = from.map_or(1.0, |from| self.direct.scattering_weight(scene, from, &ray, id, None));
-                    radiance += throughput * scene.environment_radiance(ray.direction) * weight;
-                }
-                break;
-            };
-            if let Some(id) = vertex.emitter() {
-                let emitted = vertex.emitted();
-                if !emitted.is_black() {
-                    let at = Some(vertex.point());
-                    let weight = from.map_or(1.0, |from| self.direct.scattering_weight(scene, from, &ray, id, at));
-                    radiance += throughput * emitted * weight;
-                }
-            }
+            let vertex = scene.intersect(&ray);
+            radiance += self.direct.emission(scene, &ray, vertex.as_ref(), from, throughput);
+            let Some(vertex) = vertex else { break };
             if length == 1 {
                 first_hit = Some(FirstHit::new(&ray, &vertex));
             }

@@ -2,8 +2,8 @@
 
 use glam::Vec3A;
 
-use super::Spectrum;
-use crate::ray::SurfacePoint;
+use super::{Spectrum, Vertex};
+use crate::ray::{Ray, SurfacePoint};
 
 /// The position of an emitter in [`Scene::emitters`](super::Scene::emitters): stable for the life of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,6 +30,17 @@ pub struct DirectSample<S> {
     pub pdf_solid_angle: f32,
     /// Whether no other technique can find this emitter.
     pub is_delta: bool,
+}
+
+impl<S> DirectSample<S> {
+    /// The ray from the lit vertex that asks whether anything is in between.
+    #[inline]
+    pub fn shadow_ray<V: Vertex>(&self, vertex: &V) -> Ray {
+        match &self.at {
+            Some((at, _)) => vertex.point().ray_to(at),
+            None => vertex.spawn_ray(self.wi),
+        }
+    }
 }
 
 /// A ray of light, sampled at its emitter.

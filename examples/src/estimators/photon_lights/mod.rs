@@ -7,12 +7,10 @@ use std::time::Instant;
 
 use photon_map::{ContributingLights, Gather, LightSelection, LightTable, PrimaryPhotonMap, ShadowRay, ShadowRays};
 use qmc_sampling::{Sampler, SamplerFamily};
-use scene_core::{
-    DirectSample, Emitter, EmitterId, Ray, RayCounts, Scene, Spectrum, SurfacePoint, TransportMode, Vertex,
-};
+use scene_core::{DirectSample, Emitter, RayCounts, Scene, Spectrum, TransportMode, Vertex};
 
 use self::tracing::{powers, starts, trace_all, usual_distance};
-use super::direct::{DirectLight, Scattered};
+use super::direct::DirectLight;
 use crate::light_photons::{ImportanceName, LightPhotonSettings, LightPhotonsError};
 
 /// Direct light at a vertex by a fixed number of shadow rays, however many lights there are: the lights `C` that primary photons around the
@@ -226,28 +224,12 @@ impl DirectLight for PhotonLights {
                 if value.is_black() {
                     continue;
                 }
-                let shadow_ray = match &light.at {
-                    Some((at, _)) => point.ray_to(at),
-                    None => vertex.spawn_ray(light.wi),
-                };
-                if !scene.occluded(&shadow_ray) {
+                if !scene.occluded(&light.shadow_ray(vertex)) {
                     radiance += value;
                 }
             }
         });
         radiance
-    }
-
-    #[inline]
-    fn scattering_weight<S: Scene>(
-        &self,
-        _: &S,
-        _: Scattered<'_>,
-        _: &Ray,
-        _: EmitterId,
-        _: Option<&SurfacePoint>,
-    ) -> f32 {
-        0.0
     }
 }
 

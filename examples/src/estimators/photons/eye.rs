@@ -62,7 +62,7 @@ impl<D: DirectLight> PhotonEye<D> {
         let (mut eta, mut first_hit, mut last) = (1.0, None, None);
         for length in 1..=self.max_depth {
             let vertex = scene.intersect(&ray);
-            radiance += throughput * self.emission(scene, vertex.as_ref(), &ray, last.as_ref());
+            radiance += self.direct.emission(scene, &ray, vertex.as_ref(), scattered(&last), throughput);
             let Some(vertex) = vertex else { break };
             if length == 1 {
                 first_hit = Some(FirstHit::new(&ray, &vertex));
@@ -91,8 +91,8 @@ impl<D: DirectLight> PhotonEye<D> {
                 if self.gather == 0 {
                     let ray = vertex.spawn_ray(sample.wi);
                     let hit = scene.intersect(&ray);
-                    let emission = self.emission(scene, hit.as_ref(), &ray, from.as_ref());
-                    radiance += throughput * sample.throughput * emission;
+                    let throughput = throughput * sample.throughput;
+                    radiance += self.direct.emission(scene, &ray, hit.as_ref(), scattered(&from), throughput);
                 }
                 break;
             }
@@ -111,27 +111,6 @@ impl<D: DirectLight> PhotonEye<D> {
             ray = vertex.spawn_ray(sample.wi);
         }
         (radiance, first_hit)
-    }
-
-    /// What emitters send along a ray, with the share of scattering if they could have been found from where it starts.
-    fn emission<S: Scene>(
-        &self,
-        scene: &S,
-        hit: Option<&S::Vertex<'_>>,
-        ray: &Ray,
-        from: Option<&(SurfacePoint, f32)>,
-    ) -> S::Spectrum {
-        let (id, emitted, at) = match hit {
-            Some(vertex) => (vertex.emitter(), vertex.emitted(), Some(vertex.point())),
-            None => (scene.environment(), scene.environment_radiance(ray.direction), None),
-        };
-        match (id, from) {
-            (Some(id), Some((point, pdf))) if !emitted.is_black() => {
-                let from = Scattered { point, pdf_solid_angle: *pdf };
-                emitted * self.direct.scattering_weight(scene, from, ray, id, at)
-            }
-            _ => emitted,
-        }
     }
 
     /// What photons contribute at a vertex of this length.
@@ -180,7 +159,8 @@ impl<D: DirectLight> PhotonEye<D> {
         }
         let ray = vertex.spawn_ray(sample.wi);
         let hit = scene.intersect(&ray);
-        let mut arriving = self.emission(scene, hit.as_ref(), &ray, origin(vertex, &sample).as_ref());
+        let (from, all) = (origin(vertex, &sample), S::Spectrum::splat(1.0));
+        let mut arriving = self.direct.emission(scene, &ray, hit.as_ref(), scattered(&from), all);
         if let Some(y) = hit.filter(|y| y.is_connectible() && length + 1 < self.max_depth) {
             let longest = self.longest(length + 1);
             let counts = |wi| !self.sharpness.is_left_to_caustics(&y, wi);
@@ -200,4 +180,8 @@ impl<D: DirectLight> PhotonEye<D> {
 /// From where emitters could have been found, too.
 fn origin<V: Vertex>(vertex: &V, sample: &ScatterSample<V::Spectrum>) -> Option<(SurfacePoint, f32)> {
     (!sample.is_specular).then(|| (*vertex.point(), sample.pdf_solid_angle))
+}
+
+fn scattered(from: &Option<(SurfacePoint, f32)>) -> Option<Scattered<'_>> {
+    from.as_ref().map(|(point, pdf)| Scattered { point, pdf_solid_angle: *pdf })
 }

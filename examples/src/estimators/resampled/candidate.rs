@@ -1,6 +1,6 @@
 //! Candidates: light that may arrive at a vertex.
 
-use scene_core::{DirectSample, EmitterId, Ray, Scene, TransportMode, Vertex};
+use scene_core::{DirectSample, EmitterId, Scene, TransportMode, Vertex};
 
 /// Light of an emitter that arrives at a vertex unless something is in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,18 +29,9 @@ impl<S: scene_core::Spectrum> LightCandidate<S> {
         Self { scattered: Some(self.value(vertex)), ..self }
     }
 
-    /// The shadow ray.
-    #[inline]
-    pub fn shadow_ray<V: Vertex>(&self, vertex: &V) -> Ray {
-        match &self.light.at {
-            Some((at, _)) => vertex.point().ray_to(at),
-            None => vertex.spawn_ray(self.light.wi),
-        }
-    }
-
     /// Whether nothing is in between.
     #[inline]
     pub fn is_visible<C: Scene<Spectrum = S>, V: Vertex>(&self, scene: &C, vertex: &V) -> bool {
-        self.is_seen || !scene.occluded(&self.shadow_ray(vertex))
+        self.is_seen || !scene.occluded(&self.light.shadow_ray(vertex))
     }
 }

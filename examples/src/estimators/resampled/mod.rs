@@ -9,9 +9,9 @@ mod target;
 
 use qmc_sampling::Sampler;
 use ris::{Budget, Ris};
-use scene_core::{EmitterChoice, EmitterId, Ray, Scene, Spectrum, SurfacePoint};
+use scene_core::{EmitterChoice, Scene, Spectrum};
 
-use super::direct::{DirectLight, Scattered};
+use super::direct::DirectLight;
 
 pub use candidate::LightCandidate;
 pub use cost::measure_cost;
@@ -102,17 +102,5 @@ impl<C: EmitterChoice + Sync> DirectLight for ResampledDirect<'_, C> {
             }
         });
         radiance
-    }
-
-    #[inline]
-    fn scattering_weight<S: Scene>(
-        &self,
-        _: &S,
-        _: Scattered<'_>,
-        _: &Ray,
-        _: EmitterId,
-        _: Option<&SurfacePoint>,
-    ) -> f32 {
-        0.0
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use mis_heuristics::Power;
 use qmc_sampling::{Independent, Replications, Sampler};
 use ris::{Budget, CostModel};
-use scene_core::{EmitterId, PowerChoice, Ray, Scene, Spectrum, SurfacePoint, Vertex};
+use scene_core::{PowerChoice, Scene, Spectrum, Vertex};
 use serde_json::Value;
 
 use super::{
@@ -172,17 +172,6 @@ impl DirectLight for Technique<'_> {
             Self::NextEvent(direct, times) => next_event(direct, *times, scene, vertex, sampler),
         }
     }
-
-    fn scattering_weight<S: Scene>(
-        &self,
-        _: &S,
-        _: Scattered<'_>,
-        _: &Ray,
-        _: EmitterId,
-        _: Option<&SurfacePoint>,
-    ) -> f32 {
-        0.0
-    }
 }
 
 /// Both techniques of next event estimation at one vertex, `times` each.
@@ -199,15 +188,8 @@ fn next_event<S: Scene>(
         let Some(sample) = OwnSampling.scatter(vertex, 1, sampler) else { continue };
         let ray = vertex.spawn_ray(sample.wi);
         let from = Scattered { point: vertex.point(), pdf_solid_angle: sample.pdf_solid_angle };
-        let hit = scene.intersect(&ray);
-        let (emitter, emitted) = match &hit {
-            Some(hit) => (hit.emitter(), hit.emitted()),
-            None => (scene.environment(), scene.environment_radiance(ray.direction)),
-        };
-        let Some(id) = emitter else { continue };
-        let at = hit.as_ref().map(Vertex::point);
-        let weight = if sample.is_specular { 1.0 } else { direct.scattering_weight(scene, from, &ray, id, at) };
-        sum += sample.throughput * emitted * weight;
+        let from = (!sample.is_specular).then_some(from);
+        sum += direct.emission(scene, &ray, scene.intersect(&ray).as_ref(), from, sample.throughput);
     }
     sum * (1.0 / times as f32)
 }
