@@ -58,7 +58,7 @@ pub use divide_and_conquer::divide_and_conquer;
 #[cfg(feature = "rayon")]
 pub use divide_and_conquer::par_divide_and_conquer;
 pub use error::BuildError;
-pub use grid::{HashGrid, Neighborhood, SelfQuery};
+pub use grid::{HashGrid, Neighborhood, QueryRadius, SelfQuery};
 pub use index::RangeIndex;
 #[cfg(feature = "kiddo")]
 pub use kd_tree::KdTree;

@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use range_search::check::{Violation, check_index, check_query, expected, point_sets};
-use range_search::{BruteForce, Bvh, HashGrid, KdTree, Neighbor, RangeIndex, batch, divide_and_conquer};
+use range_search::{BruteForce, Bvh, HashGrid, KdTree, Neighbor, QueryRadius, RangeIndex, batch, divide_and_conquer};
 use range_search::{BuildError, par_divide_and_conquer};
 
 fn coordinate() -> impl Strategy<Value = f32> {
@@ -77,9 +77,21 @@ proptest! {
 }
 
 fn compare_self_query(grid: &HashGrid, points: &[[f32; 3]], radius: f32) {
+    compare_self_query_of(grid, points, radius, |_| radius);
+    let radius_of = |id: usize| [1.0, 0.3, f32::NAN, -1.0, 0.0, 2.0][id % 6] * radius;
+    compare_self_query_of(grid, points, |slot: usize| radius_of(grid.id(slot)), radius_of);
+}
+
+fn compare_self_query_of(
+    grid: &HashGrid,
+    points: &[[f32; 3]],
+    radius: impl QueryRadius,
+    radius_of: impl Fn(usize) -> f32,
+) {
     let mut slot = 0;
     grid.self_query(radius).for_each(|neighborhood| {
         let id = neighborhood.id();
+        let radius = radius_of(id);
         assert_eq!((neighborhood.slot(), grid.id(slot)), (slot, id));
         assert_eq!(neighborhood.position().map(f32::to_bits), points[id].map(f32::to_bits));
         let mut one_by_one = Vec::new();

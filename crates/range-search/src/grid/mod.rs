@@ -8,7 +8,7 @@ mod self_query;
 use crate::error::BuildError;
 use crate::lanes::Lanes;
 use cells::{CellBounds, Layout, Scale};
-pub use self_query::{Neighborhood, SelfQuery};
+pub use self_query::{Neighborhood, QueryRadius, SelfQuery};
 
 /// A grid of cubic cells over all of space; the points of a cell lie together, in the order of their ids.
 ///

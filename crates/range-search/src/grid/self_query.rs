@@ -10,7 +10,29 @@ const CHUNK: usize = 1 << 12;
 /// Queries of a cell that share their candidates, at most.
 const MOST_QUERIES: usize = 64;
 
-/// The neighbours of every point of a grid, within the same radius: data are queries.
+/// How far the points of a grid look for neighbours: all as far (`f32`), or each as far as a closure says of its slot.
+///
+/// Where the radius is negative or NaN nothing is looked for.
+pub trait QueryRadius {
+    /// Radius of the point in a slot. Asked more than once for a point; the answer has to be the same.
+    fn at(&self, slot: usize) -> f32;
+}
+
+impl QueryRadius for f32 {
+    #[inline(always)]
+    fn at(&self, _: usize) -> f32 {
+        *self
+    }
+}
+
+impl<F: Fn(usize) -> f32> QueryRadius for F {
+    #[inline(always)]
+    fn at(&self, slot: usize) -> f32 {
+        self(slot)
+    }
+}
+
+/// The neighbours of every point of a grid: data are queries.
 ///
 /// The queries of a cell share their candidates, which are copied together once; each query then tests them in one go. Results are as
 /// if [`for_each_within`](crate::RangeIndex::for_each_within) were asked at each point: same neighbours, same order, same squared
@@ -32,9 +54,9 @@ const MOST_QUERIES: usize = 64;
 /// # Ok::<(), range_search::BuildError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct SelfQuery<'a> {
+pub struct SelfQuery<'a, R = f32> {
     grid: &'a HashGrid,
-    radius: f32,
+    radius: R,
 }
 
 /// A point and its neighbours.
@@ -100,17 +122,35 @@ impl<'a> Neighborhood<'a> {
 }
 
 impl HashGrid {
-    /// The neighbours of all points within a radius, which need not be the cell size. For other radii see the table of
-    /// [`RangeIndex`](crate::RangeIndex): where nothing is found, neighbourhoods are empty.
-    pub fn self_query(&self, radius: f32) -> SelfQuery<'_> {
+    /// The neighbours of all points within a radius, which need not be the cell size, nor the same for all points. For other radii see the
+    /// table of [`RangeIndex`](crate::RangeIndex): where nothing is found, neighbourhoods are empty.
+    ///
+    /// ```
+    /// use range_search::HashGrid;
+    /// let grid = HashGrid::build(&[[0.0_f32, 0.0, 0.0], [0.5, 0.0, 0.0], [0.9, 0.0, 0.0]], |p| *p, 1.0)?;
+    /// let radii = [1.0, 0.45, -1.0];
+    /// let counts = grid.self_query(|slot| radii[grid.id(slot)]).map(|neighborhood| neighborhood.len());
+    /// assert_eq!(counts, [3, 2, 0]);
+    /// # Ok::<(), range_search::BuildError>(())
+    /// ```
+    pub fn self_query<R: QueryRadius>(&self, radius: R) -> SelfQuery<'_, R> {
         SelfQuery { grid: self, radius }
     }
 }
 
-impl<'a> SelfQuery<'a> {
+impl<R: QueryRadius> SelfQuery<'_, R> {
     /// Calls `f` with the neighbourhood of each point, in the order of slots.
     pub fn for_each(&self, mut f: impl FnMut(Neighborhood<'_>)) {
         self.visit(0..self.grid.points.len(), &mut f);
+    }
+
+    /// Calls `f` with the neighbourhoods of the points in a range of slots, in their order: for loops over parts of the grid.
+    ///
+    /// # Panics
+    /// If there are no such slots.
+    pub fn for_each_in(&self, slots: core::ops::Range<usize>, mut f: impl FnMut(Neighborhood<'_>)) {
+        assert!(slots.end <= self.grid.points.len(), "slots {slots:?} of {}", self.grid.points.len());
+        self.visit(slots, &mut f);
     }
 
     /// What `f` makes of each neighbourhood, in the order of slots; [`HashGrid::restore`] brings it into the order of the input.
@@ -122,14 +162,20 @@ impl<'a> SelfQuery<'a> {
 
     /// As [`for_each`](Self::for_each), on all threads of rayon's pool: the same neighbourhoods, in any order.
     #[cfg(feature = "rayon")]
-    pub fn par_for_each(&self, f: impl Fn(Neighborhood<'_>) + Sync) {
+    pub fn par_for_each(&self, f: impl Fn(Neighborhood<'_>) + Sync)
+    where
+        R: Sync,
+    {
         use rayon::prelude::*;
         self.chunks().for_each(|slots| self.visit(slots, &mut &f));
     }
 
     /// As [`map`](Self::map), on all threads of rayon's pool: the same result.
     #[cfg(feature = "rayon")]
-    pub fn par_map<T: Send>(&self, f: impl Fn(Neighborhood<'_>) -> T + Sync) -> Vec<T> {
+    pub fn par_map<T: Send>(&self, f: impl Fn(Neighborhood<'_>) -> T + Sync) -> Vec<T>
+    where
+        R: Sync,
+    {
         use rayon::prelude::*;
         let results: Vec<Vec<T>> = self
             .chunks()
@@ -143,7 +189,7 @@ impl<'a> SelfQuery<'a> {
     }
 
     #[cfg(feature = "rayon")]
-    fn chunks(&self) -> impl rayon::iter::IndexedParallelIterator<Item = core::ops::Range<usize>> {
+    fn chunks(&self) -> impl rayon::iter::IndexedParallelIterator<Item = core::ops::Range<usize>> + use<R> {
         use rayon::prelude::*;
         let len = self.grid.points.len();
         (0..len.div_ceil(CHUNK)).into_par_iter().map(move |chunk| chunk * CHUNK..((chunk + 1) * CHUNK).min(len))
@@ -159,6 +205,7 @@ impl<'a> SelfQuery<'a> {
             let first = grid.points.position(start);
             let cell = grid.scale.cell(first);
             let (mut min, mut max) = (first, first);
+            let mut radius = self.radius.at(start);
             let mut end = start + 1;
             while end < slots.end.min(start + MOST_QUERIES) {
                 let position = grid.points.position(end);
@@ -169,10 +216,12 @@ impl<'a> SelfQuery<'a> {
                     min[axis] = min[axis].min(position[axis]);
                     max[axis] = max[axis].max(position[axis]);
                 }
+                // The other one if one is NaN.
+                radius = radius.max(self.radius.at(end));
                 end += 1;
             }
-            // Gather what may be near any of them.
-            if let (Some(lower), Some(upper)) = (Ball::new(min, self.radius), Ball::new(max, self.radius)) {
+            // Gather what may be near any of them, as far as the one looks that looks farthest.
+            if let (Some(lower), Some(upper)) = (Ball::new(min, radius), Ball::new(max, radius)) {
                 let ranges = if lower.is_everything() {
                     grid.ranges_of(&lower)
                 } else {
@@ -183,7 +232,7 @@ impl<'a> SelfQuery<'a> {
             // Test it for each of them.
             for slot in start..end {
                 let position = grid.points.position(slot);
-                let (slots, distances_squared) = match Ball::new(position, self.radius) {
+                let (slots, distances_squared) = match Ball::new(position, self.radius.at(slot)) {
                     Some(ball) => candidates.find(&ball),
                     None => (&[][..], &[][..]),
                 };
