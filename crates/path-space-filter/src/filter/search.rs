@@ -1,0 +1,232 @@
+//! Ways to find neighbours.
+
+use std::sync::OnceLock;
+
+use range_search::{BruteForce, HashGrid, RangeIndex};
+
+use super::PathSpaceFilter;
+use super::grid::{self, Level};
+use super::mean::{Counted, Mean, Rule, over_squared, weight, weight_of_center};
+use super::prepared::{Iterated, Prepared};
+use crate::{Contribution, Kernel, Modulation, PathVertex, Similarity, parallel};
+
+/// How neighbours are found. All find the same ones; averages differ by round-off, since sums run in another order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Search {
+    /// Hash grids, one for each order of magnitude of the radii: the fastest.
+    #[default]
+    Grid,
+    /// No index: queries are halved until there are few points left. For radii that hardly vary, since it looks as far as the largest.
+    DivideAndConquer,
+    /// A k-d tree.
+    #[cfg(feature = "kiddo")]
+    KdTree,
+    /// A bounding volume hierarchy.
+    #[cfg(feature = "obvhs")]
+    Hierarchy,
+    /// All pairs: the oracle of the others.
+    BruteForce,
+}
+
+/// What a search has built.
+pub(super) enum Searched<F> {
+    Grid(Vec<Level<F>>),
+    DivideAndConquer,
+    #[cfg(feature = "kiddo")]
+    KdTree(Box<range_search::KdTree>),
+    #[cfg(feature = "obvhs")]
+    Hierarchy(Box<range_search::Bvh>),
+    BruteForce(BruteForce),
+    /// More vertices than an index can name.
+    Nothing,
+}
+
+impl<F: Clone + Send + Sync> Searched<F> {
+    pub(super) fn new<C>(search: Search, prepared: &Prepared<F, C>) -> Self {
+        let positions = &prepared.positions;
+        let searched = match search {
+            Search::Grid => Some(Self::Grid(grid::levels(prepared))),
+            Search::DivideAndConquer => Some(Self::DivideAndConquer),
+            #[cfg(feature = "kiddo")]
+            Search::KdTree => range_search::KdTree::build(positions, |x| *x).ok().map(Box::new).map(Self::KdTree),
+            #[cfg(feature = "obvhs")]
+            Search::Hierarchy => range_search::Bvh::build(positions, |x| *x).ok().map(Box::new).map(Self::Hierarchy),
+            Search::BruteForce => BruteForce::build(positions, |x| *x).ok().map(Self::BruteForce),
+        };
+        searched.unwrap_or(Self::Nothing)
+    }
+
+    pub(super) fn averages<V, C, S, K>(&self, prepared: &Prepared<F, C>, rule: &Rule<'_, S, K>) -> Iterated<C>
+    where
+        C: Contribution + Send + Sync,
+        S: Similarity<V, Features = F> + Sync,
+        K: Kernel + Sync,
+    {
+        match self {
+            Self::Grid(levels) => grid::averages(levels, prepared, rule),
+            Self::DivideAndConquer => divide_and_conquer(prepared, rule),
+            #[cfg(feature = "kiddo")]
+            Self::KdTree(tree) => with_index(&**tree, prepared, rule),
+            #[cfg(feature = "obvhs")]
+            Self::Hierarchy(hierarchy) => with_index(&**hierarchy, prepared, rule),
+            Self::BruteForce(all) => with_index(all, prepared, rule),
+            Self::Nothing => (prepared.values.clone(), vec![1; prepared.values.len()]),
+        }
+    }
+}
+
+/// An index as an object: one copy of the code for all of them, and a call for each neighbour, which only grids are too fast for.
+pub(super) trait Finder: Sync {
+    /// Calls `f` with id and squared distance of all within the radius.
+    fn find(&self, center: [f32; 3], radius: f32, f: &mut dyn FnMut(usize, f32));
+}
+
+impl<I: RangeIndex + Sync> Finder for I {
+    fn find(&self, center: [f32; 3], radius: f32, f: &mut dyn FnMut(usize, f32)) {
+        self.for_each_within(center, radius, f);
+    }
+}
+
+/// The average of each vertex, one query after the other.
+pub(super) fn with_index<V, C, S, K>(
+    index: &dyn Finder,
+    prepared: &Prepared<S::Features, C>,
+    rule: &Rule<'_, S, K>,
+) -> Iterated<C>
+where
+    C: Contribution + Send + Sync,
+    S: Similarity<V> + Sync,
+    S::Features: Clone + Send + Sync,
+    K: Kernel + Sync,
+{
+    let mean = |i: usize| {
+        if !prepared.takes_part(i) {
+            return prepared.own(i, None);
+        }
+        let (features, over) = (&prepared.features[i], over_squared(prepared.radii[i]));
+        let mut mean = Mean::new();
+        index.find(prepared.positions[i], prepared.radii[i], &mut |j, distance_squared| {
+            let mut weight = weight(rule, features, &prepared.features[j], distance_squared * over);
+            if i == j {
+                weight = weight_of_center(weight);
+            }
+            mean.add(weight, prepared.values[j]);
+        });
+        prepared.own(i, mean.finish())
+    };
+    parallel::map_range(prepared.values.len(), mean).into_iter().unzip()
+}
+
+fn divide_and_conquer<V, C, S, K>(prepared: &Prepared<S::Features, C>, rule: &Rule<'_, S, K>) -> Iterated<C>
+where
+    C: Contribution + Send + Sync,
+    S: Similarity<V> + Sync,
+    S::Features: Clone + Send + Sync,
+    K: Kernel + Sync,
+{
+    let found: Vec<OnceLock<Counted<C>>> = prepared.values.iter().map(|_| OnceLock::new()).collect();
+    let widest = prepared.radii.iter().fold(-1.0_f32, |widest, &radius| widest.max(radius));
+    let visit = |i: usize, neighbours: &[range_search::Neighbor]| {
+        let (features, radius) = (&prepared.features[i], prepared.radii[i]);
+        let over = over_squared(radius);
+        let mut mean = Mean::new();
+        for neighbour in neighbours {
+            let (j, distance_squared) = (neighbour.id(), neighbour.distance_squared());
+            // Those that a smaller radius finds; none if it is negative or NaN.
+            if radius >= 0.0 && distance_squared <= radius * radius {
+                let mut weight = weight(rule, features, &prepared.features[j], distance_squared * over);
+                if i == j {
+                    weight = weight_of_center(weight);
+                }
+                mean.add(weight, prepared.values[j]);
+            }
+        }
+        if let Some(mean) = mean.finish() {
+            // Every query is answered once.
+            let _ = found[i].set(mean);
+        }
+    };
+    divide(&prepared.positions, widest, &visit);
+    found.into_iter().enumerate().map(|(i, found)| prepared.own(i, found.into_inner())).unzip()
+}
+
+/// Visits the neighbours of all positions. Of too many there are none, and everybody keeps what they have.
+fn divide(positions: &[[f32; 3]], radius: f32, visit: &(dyn Fn(usize, &[range_search::Neighbor]) + Sync)) {
+    #[cfg(feature = "rayon")]
+    let _ = range_search::par_divide_and_conquer(positions, |x| *x, positions, |x| *x, radius, visit);
+    #[cfg(not(feature = "rayon"))]
+    let _ = range_search::divide_and_conquer(positions, |x| *x, positions, |x| *x, radius, visit);
+}
+
+/// The averages at queries without contributions.
+pub(super) fn at_queries<V, S, K, M>(
+    filter: &PathSpaceFilter<S, K, M>,
+    prepared: &Prepared<S::Features, V::Contribution>,
+    queries: &[V],
+    batch: u64,
+) -> Vec<Option<V::Contribution>>
+where
+    V: PathVertex + Sync,
+    V::Contribution: Send + Sync,
+    S: Similarity<V> + Sync,
+    S::Features: Clone + Send + Sync,
+    K: Kernel + Sync,
+    M: Modulation<V> + Sync,
+{
+    let shrinkage = filter.radius().shrinkage(batch);
+    let radii = parallel::map(queries, |query| filter.radius().at(1, query.path_length()) * shrinkage);
+    let asked = Asked { filter, prepared, queries, radii };
+    let positions = &prepared.positions;
+    let found = match filter.search {
+        Search::Grid | Search::DivideAndConquer => asked.of_grids(),
+        #[cfg(feature = "kiddo")]
+        Search::KdTree => range_search::KdTree::build(positions, |x| *x).ok().map(|tree| asked.of(&tree)),
+        #[cfg(feature = "obvhs")]
+        Search::Hierarchy => range_search::Bvh::build(positions, |x| *x).ok().map(|hierarchy| asked.of(&hierarchy)),
+        Search::BruteForce => BruteForce::build(positions, |x| *x).ok().map(|all| asked.of(&all)),
+    };
+    found.unwrap_or_else(|| vec![None; queries.len()])
+}
+
+/// Queries with what they ask.
+struct Asked<'a, V: PathVertex, S: Similarity<V>, K, M> {
+    filter: &'a PathSpaceFilter<S, K, M>,
+    prepared: &'a Prepared<S::Features, V::Contribution>,
+    queries: &'a [V],
+    radii: Vec<f32>,
+}
+
+impl<V, S, K, M> Asked<'_, V, S, K, M>
+where
+    V: PathVertex + Sync,
+    V::Contribution: Send + Sync,
+    S: Similarity<V> + Sync,
+    S::Features: Clone + Send + Sync,
+    K: Kernel + Sync,
+    M: Modulation<V> + Sync,
+{
+    fn of(&self, index: &dyn Finder) -> Vec<Option<V::Contribution>> {
+        parallel::map_range(self.queries.len(), |i| self.mean(index, i))
+    }
+
+    /// One grid for each order of magnitude.
+    fn of_grids(&self) -> Option<Vec<Option<V::Contribution>>> {
+        let (level_of, sizes) = grid::divide(&self.radii);
+        let grids: Option<Vec<HashGrid>> = sizes.iter().map(|&s| grid::build(&self.prepared.positions, s)).collect();
+        let grids = grids?;
+        Some(parallel::map_range(self.queries.len(), |i| self.mean(&grids[level_of[i]], i)))
+    }
+
+    fn mean(&self, index: &dyn Finder, i: usize) -> Option<V::Contribution> {
+        let (query, over) = (&self.queries[i], over_squared(self.radii[i]));
+        let (rule, prepared) = (self.filter.rule(), self.prepared);
+        let features = self.filter.similarity.features(query);
+        let mut mean = Mean::new();
+        index.find(query.position(), self.radii[i], &mut |j, distance_squared| {
+            let weight = weight(&rule, &features, &prepared.features[j], distance_squared * over);
+            mean.add(weight, prepared.values[j]);
+        });
+        mean.finish().map(|(mean, _)| self.filter.modulation.remodulate(query, mean))
+    }
+}
