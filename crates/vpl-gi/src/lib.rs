@@ -22,7 +22,7 @@ pub use caustics::{CausticMap, NoCaustics};
 pub use discontinuity::{DiscontinuityBuffer, PixelFeatures};
 pub use lights::{LightKind, LightTracing, VirtualPointLight, VirtualPointLights, geometry_term, photon_cloud};
 pub use mis_heuristics::PartitionError;
-pub use observer::Observer;
+pub use observer::{Found, Observer};
 pub use partition::{Partition, Threshold};
 pub use robust::{FinalGathering, Residual, RobustIgi};
 pub use shading::unshadowed;

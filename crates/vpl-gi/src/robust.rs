@@ -8,7 +8,7 @@ use scene_core::{
 
 use crate::caustics::CausticMap;
 use crate::lights::{VirtualPointLights, geometry_term};
-use crate::observer::Observer;
+use crate::observer::{Found, Observer};
 use crate::partition::{Partition, peak};
 use crate::shading::Connections;
 use crate::shadow_rays::{Shading, ShadowRays};
@@ -236,19 +236,19 @@ where
                 let left = self.left_at_infinity(&eye);
                 if left > 0.0 && self.scene.environment().is_some() {
                     let value = eye.throughput * self.scene.environment_radiance(eye.ray.direction) * left;
-                    observer.contribution(eye.length, None, value);
+                    observer.contribution(eye.length, Found::Hit, value);
                     radiance += value;
                 }
                 return radiance;
             };
-            observer.vertex(eye.length, &vertex);
+            observer.vertex(eye.length, &vertex, eye.throughput);
             let left = self.left_at(&eye, &vertex);
 
             // Emission, on direct hits.
             if left.emission > 0.0 && vertex.emitter().is_some() {
                 let value = eye.throughput * vertex.emitted() * left.emission;
                 if !value.is_black() {
-                    observer.contribution(eye.length, None, value);
+                    observer.contribution(eye.length, Found::Hit, value);
                     radiance += value;
                 }
             }
@@ -260,8 +260,13 @@ where
             let gathers = eye.gathers && vertex.is_connectible();
             if left.is_any_smooth() && vertex.is_connectible() {
                 let value = eye.throughput * self.connect(&vertex, &left, eye.length, gathers, sampler);
-                observer.contribution(eye.length, Some(0), value);
+                observer.contribution(eye.length, Found::Connections, value);
                 radiance += value;
+                if let Some(caustics) = self.caustics {
+                    let value = eye.throughput * caustics.radiance(&vertex) * left.smooth;
+                    observer.contribution(eye.length, Found::Photons, value);
+                    radiance += value;
+                }
             }
 
             // 2b: scatter.
@@ -271,7 +276,7 @@ where
             if gathers {
                 return radiance + self.gather(&eye, &vertex, &left, sampler, observer);
             }
-            match self.scatter(&eye, &vertex, &left, false, sampler) {
+            match self.scatter(&eye, &vertex, &left, false, sampler, observer) {
                 Some(next) => eye = next,
                 None => return radiance,
             }
@@ -318,7 +323,7 @@ where
         }
     }
 
-    /// What the virtual point lights and the caustic map contribute at eye vertex number `length`, before attenuation.
+    /// What the virtual point lights contribute at eye vertex number `length`, before attenuation.
     fn connect(
         &self,
         vertex: &S::Vertex<'s>,
@@ -344,7 +349,7 @@ where
         if left.term.is_none() {
             reflected *= S::Spectrum::splat(left.smooth);
         }
-        self.caustics.map_or(reflected, |caustics| reflected + caustics.radiance(vertex) * left.smooth)
+        reflected
     }
 
     /// Goes on in several directions.
@@ -361,7 +366,7 @@ where
         let mut radiance = S::Spectrum::ZERO;
         for ray in 0..rays {
             let mut child = sampler.fork(GATHER_DOMAIN ^ ray);
-            if let Some(next) = self.scatter(eye, vertex, &left, true, &mut child) {
+            if let Some(next) = self.scatter(eye, vertex, &left, true, &mut child, observer) {
                 radiance += self.follow(next, &mut child, observer);
             }
         }
@@ -377,13 +382,14 @@ where
     }
 
     /// The way to the next vertex; nothing if the path ends here.
-    fn scatter(
+    fn scatter<O: Observer<S::Vertex<'s>>>(
         &self,
         eye: &EyeRay<S::Spectrum>,
         vertex: &S::Vertex<'s>,
         left: &Left,
         gathered: bool,
         sampler: &mut impl Sampler,
+        observer: &mut O,
     ) -> Option<EyeRay<S::Spectrum>> {
         let (lobe, [u, v]) = (sampler.next_1d(), sampler.next_2d());
         let sample = vertex.sample([lobe, u, v], TransportMode::Radiance)?;
@@ -425,6 +431,7 @@ where
             }
             throughput *= S::Spectrum::splat(1.0 / survival);
         }
+        observer.scattered(eye.length, vertex, &sample);
         let gathers = eye.gathers && !gathered;
         Some(EyeRay { ray, throughput, eta, length: eye.length + 1, left, edge, gathers })
     }

@@ -12,7 +12,7 @@ use super::light_paths::{LightPaths, backward};
 use super::path::{CENTRE, EyeVertex, Joint, LensRay, Path, Samples};
 use super::techniques::PathHeuristic;
 use crate::lights::LightKind;
-use crate::observer::Observer;
+use crate::observer::{Found, Observer};
 use crate::partition::Partition;
 use crate::shading::{Connections, for_each_unshadowed, shadow_ray};
 
@@ -116,7 +116,7 @@ where
                 }
                 return radiance;
             };
-            observer.vertex(length, &vertex);
+            observer.vertex(length, &vertex, throughput);
             let point = *vertex.point();
             let forward = pdf * by_area(1.0, from, &point);
             self.vertices.push(EyeVertex { point: Some(point), forward, ratio: 0.0, is_specular: false });
@@ -154,6 +154,7 @@ where
             if throughput.is_black() || !throughput.is_finite() {
                 return radiance;
             }
+            observer.scattered(length, &vertex, &sample);
             self.leave(&vertex, sample.wi, sample.is_specular);
             pdf = if sample.is_specular { 1.0 } else { f64::from(sample.pdf_solid_angle) };
             from = point.position;
@@ -202,7 +203,7 @@ where
             let path = self.path(Joint::Hit { vertex, towards_eye, emitter, probability }, 0);
             value * self.settings.heuristic.weight(0, &path) as f32
         };
-        observer.contribution(length as u32, None, value);
+        observer.contribution(length as u32, Found::Hit, value);
         value
     }
 
@@ -245,7 +246,8 @@ where
         let value = value * weight;
         let value = if test_first { value } else { tests.connect(value, ray(), |ray| self.scene.occluded(ray)) };
         if !value.is_black() {
-            observer.contribution(self.vertices.len() as u32, Some(end.length), value);
+            let found = Found::Connection { light: end.length };
+            observer.contribution(self.vertices.len() as u32, found, value);
         }
         value
     }
