@@ -16,6 +16,8 @@
 pub mod choices;
 pub mod estimators;
 pub mod experiments;
+pub mod filtering;
+pub mod filters;
 pub mod light_paths;
 pub mod light_photons;
 pub mod metrics;

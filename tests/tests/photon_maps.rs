@@ -219,7 +219,7 @@ fn pass_with<S: Scene + Sync, F: SamplerFamily, D: DirectLight, C: EmitterChoice
     let estimation = DensityEstimation { gather: Gather::within(radius).unwrap(), kernel: Kernel::Epanechnikov };
     let maps = Maps { global: PhotonView::new(all, estimation), caustic: None };
     rays += context.add_all(film, index..index + 1, |scene, scratch, ray, sampler| {
-        camera.eye.radiance(scene, &maps, scratch, ray, sampler)
+        camera.eye.trace(scene, &maps, scratch, ray, sampler, &mut ())
     });
     PassCounts { rays, light_paths: 0 }
 }

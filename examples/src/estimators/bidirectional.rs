@@ -52,7 +52,7 @@ impl<H: PathHeuristic + Sync, C: EmitterChoice + Sync> SharingEstimator for Bidi
         S: Scene,
         V: Vertex<Spectrum = S::Spectrum> + Send + Sync,
     {
-        let mut first = FirstVertex { ray, hit: None };
+        let mut first = FirstVertex { ray, hit: None, next: &mut () };
         let radiance = match self.resampled {
             None => self.paths.radiance(scene, lights, ray, sampler, &mut first),
             Some(rays) => {

@@ -16,6 +16,7 @@ mod virtual_lights;
 use scene_core::{Ray, Scene, Spectrum, Vertex};
 
 use qmc_sampling::Sampler;
+use vpl_gi::Observer;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use bidirectional::BidirectionalPaths;
@@ -60,8 +61,20 @@ impl FirstHit {
 
 /// An estimator that starts at the sensor: one ray gives one sample of a pixel.
 pub trait CameraEstimator: Sync {
-    /// An estimate of the radiance that arrives along `ray`, and what the ray hit first.
-    fn radiance<S: Scene>(&self, scene: &S, ray: Ray, sampler: &mut impl Sampler) -> (S::Spectrum, Option<FirstHit>);
+    /// An estimate of the radiance that arrives along `ray`, and what the ray hit first; `observer` looks on.
+    fn trace<'s, S: Scene, O: Observer<S::Vertex<'s>>>(
+        &self,
+        scene: &'s S,
+        ray: Ray,
+        sampler: &mut impl Sampler,
+        observer: &mut O,
+    ) -> (S::Spectrum, Option<FirstHit>);
+
+    /// [`trace`](Self::trace) with nobody who looks on.
+    #[inline]
+    fn radiance<S: Scene>(&self, scene: &S, ray: Ray, sampler: &mut impl Sampler) -> (S::Spectrum, Option<FirstHit>) {
+        self.trace(scene, ray, sampler, &mut ())
+    }
 }
 
 /// An estimator that starts at the emitters: one path gives values for any pixels.

@@ -2,6 +2,7 @@
 
 use qmc_sampling::Sampler;
 use scene_core::{Ray, RussianRoulette, Scene, Spectrum, SurfacePoint, Vertex};
+use vpl_gi::{Found, Observer};
 
 use super::direct::{DirectLight, Scattered};
 use super::scattering::{OwnSampling, ScatterSampling};
@@ -47,11 +48,12 @@ pub struct PathTracer<D, B = OwnSampling> {
 
 impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
     #[inline]
-    fn radiance<S: Scene>(
+    fn trace<'s, S: Scene, O: Observer<S::Vertex<'s>>>(
         &self,
-        scene: &S,
+        scene: &'s S,
         mut ray: Ray,
         sampler: &mut impl Sampler,
+        observer: &mut O,
     ) -> (S::Spectrum, Option<FirstHit>) {
         let mut radiance = S::Spectrum::ZERO;
         let mut throughput = S::Spectrum::splat(1.0);
@@ -63,7 +65,12 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
 
             // Light found by scattering (or seen directly).
             let vertex = scene.intersect(&ray);
-            radiance += self.direct.emission(scene, &ray, vertex.as_ref(), from, throughput);
+            let emission = self.direct.emission(scene, &ray, vertex.as_ref(), from, throughput);
+            if let Some(vertex) = &vertex {
+                observer.vertex(length, vertex, throughput);
+            }
+            observer.contribution(length, Found::Hit, emission);
+            radiance += emission;
             let Some(vertex) = vertex else { break };
             if length == 1 {
                 first_hit = Some(FirstHit::new(&ray, &vertex));
@@ -77,7 +84,9 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
             let wanted = vertex.is_connectible() && !only_specular;
             let direct = self.direct.sample(scene, &vertex, length, wanted, sampler);
             if wanted {
-                radiance += throughput * direct;
+                let value = throughput * direct;
+                observer.contribution(length, Found::Connection { light: 0 }, value);
+                radiance += value;
             }
 
             // Scatter.
@@ -96,6 +105,7 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
                 }
                 throughput *= S::Spectrum::splat(1.0 / survival);
             }
+            observer.scattered(length, &vertex, &sample);
             last = (!sample.is_specular).then(|| (*vertex.point(), sample.pdf_solid_angle));
             ray = vertex.spawn_ray(sample.wi);
         }

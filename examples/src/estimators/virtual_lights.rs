@@ -1,8 +1,8 @@
 //! Virtual point lights: robust instant global illumination, and instant radiosity.
 
 use qmc_sampling::Sampler;
-use scene_core::{EmitterChoice, Ray, Scene, Vertex};
-use vpl_gi::{CausticMap, LightTracing, Observer, RobustIgi, VirtualPointLights};
+use scene_core::{EmitterChoice, Ray, ScatterSample, Scene, Vertex};
+use vpl_gi::{CausticMap, Found, LightTracing, Observer, RobustIgi, VirtualPointLights};
 
 use super::{FirstHit, PhotonCaustics};
 use crate::render::SharingEstimator;
@@ -51,24 +51,55 @@ impl<C: EmitterChoice + Sync> SharingEstimator for VirtualLights<'_, C> {
         S: Scene,
         V: Vertex<Spectrum = S::Spectrum> + Send + Sync,
     {
-        let mut first = FirstVertex { ray, hit: None };
+        self.trace(scene, lights, ray, sampler, &mut ())
+    }
+}
+
+impl<C> VirtualLights<'_, C> {
+    /// An estimate of the radiance that arrives along `ray`, and what the ray hit first; `observer` looks on.
+    pub fn trace<'s, S, V, O>(
+        &self,
+        scene: &'s S,
+        lights: &VirtualPointLights<V>,
+        ray: Ray,
+        sampler: &mut impl Sampler,
+        observer: &mut O,
+    ) -> (S::Spectrum, Option<FirstHit>)
+    where
+        S: Scene,
+        V: Vertex<Spectrum = S::Spectrum> + Send + Sync,
+        O: Observer<S::Vertex<'s>>,
+    {
+        let mut first = FirstVertex { ray, hit: None, next: observer };
         let caustics = self.caustics.map(|caustics| caustics as &dyn CausticMap<_>);
         let radiance = self.eye.trace(scene, lights, caustics, ray, sampler, &mut first);
         (radiance, first.hit)
     }
 }
 
-/// Keeps what the camera sees.
-pub(super) struct FirstVertex {
+/// Keeps what the camera sees, and lets another one look on.
+pub(super) struct FirstVertex<'a, O> {
     pub(super) ray: Ray,
     pub(super) hit: Option<FirstHit>,
+    pub(super) next: &'a mut O,
 }
 
-impl<X: Vertex> Observer<X> for FirstVertex {
+impl<X: Vertex, O: Observer<X>> Observer<X> for FirstVertex<'_, O> {
     #[inline]
-    fn vertex(&mut self, length: u32, vertex: &X) {
+    fn vertex(&mut self, length: u32, vertex: &X, throughput: X::Spectrum) {
         if length == 1 {
             self.hit = Some(FirstHit::new(&self.ray, vertex));
         }
+        self.next.vertex(length, vertex, throughput);
+    }
+
+    #[inline]
+    fn scattered(&mut self, length: u32, vertex: &X, sample: &ScatterSample<X::Spectrum>) {
+        self.next.scattered(length, vertex, sample);
+    }
+
+    #[inline]
+    fn contribution(&mut self, eye: u32, found: Found, value: X::Spectrum) {
+        self.next.contribution(eye, found, value);
     }
 }

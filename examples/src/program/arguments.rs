@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
+use crate::filters::FilterSettings;
 use crate::light_paths::LightPathSettings;
 use crate::light_photons::LightPhotonSettings;
 use crate::photons::PhotonSettings;
@@ -107,9 +108,9 @@ pub struct RenderArguments {
     /// Segments from which Russian roulette may end a path.
     #[arg(long, default_value_t = 5)]
     pub rr_depth: u32,
-    /// Reconstruction filter [default: the scene's].
-    #[arg(long, value_enum)]
-    pub filter: Option<FilterName>,
+    /// Reconstruction filter [default: the scene's], and path space filter [default: none]; may be given once for each.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub filter: Vec<FilterName>,
     /// Distance up to which `ao` looks for occluders [default: a tenth of the scene's radius].
     #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
     pub ao_distance: Option<f64>,
@@ -141,6 +142,9 @@ pub struct RenderArguments {
     /// Photon maps.
     #[command(flatten)]
     pub photons: PhotonSettings,
+    /// Path space filtering.
+    #[command(flatten)]
+    pub filtering: FilterSettings,
 }
 
 /// Arguments of `diff`.

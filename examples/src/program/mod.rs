@@ -3,6 +3,7 @@
 mod arguments;
 mod diff;
 mod experiment;
+mod filtered;
 mod list;
 mod load;
 mod render;

@@ -10,12 +10,13 @@ use scene_core::film::{Filter, LayeredImage};
 use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
 use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
-use super::{Failure, RenderArguments, load_description, report};
+use super::{Failure, RenderArguments, filtered, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
     AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NextEvent, NoLightPaths, OwnSampling, PathTracer,
     PhotonLights, VirtualLights,
 };
+use crate::filters::{FilterSettings, PathFilterName};
 use crate::light_paths::LightPathSettings;
 use crate::light_photons::LightPhotonSettings;
 use crate::output::{
@@ -68,15 +69,38 @@ pub enum FilterName {
     Tent,
     /// Gaussian with a standard deviation of half a pixel.
     Gaussian,
+    /// Path space filtering by range search, before reconstruction.
+    Psf,
+    /// Path space filtering by jittered spatial hashing, before reconstruction.
+    PsfHash,
 }
 
 impl FilterName {
-    fn filter(self) -> Filter {
+    fn reconstruction(self) -> Option<Filter> {
         match self {
-            Self::Box => Filter::BOX,
-            Self::Tent => Filter::TENT,
-            Self::Gaussian => Filter::GAUSSIAN,
+            Self::Box => Some(Filter::BOX),
+            Self::Tent => Some(Filter::TENT),
+            Self::Gaussian => Some(Filter::GAUSSIAN),
+            Self::Psf | Self::PsfHash => None,
         }
+    }
+
+    fn path_space(self) -> Option<PathFilterName> {
+        match self {
+            Self::Psf => Some(PathFilterName::Psf),
+            Self::PsfHash => Some(PathFilterName::PsfHash),
+            _ => None,
+        }
+    }
+
+    /// The reconstruction filter and the path space filter among those that were named: one of each at most.
+    fn sort(names: &[Self]) -> Result<(Option<Filter>, Option<PathFilterName>), Failure> {
+        let reconstructions: Vec<Filter> = names.iter().filter_map(|name| name.reconstruction()).collect();
+        let path_space: Vec<PathFilterName> = names.iter().filter_map(|name| name.path_space()).collect();
+        if reconstructions.len() > 1 || path_space.len() > 1 {
+            return Err("--filter: one of box, tent and gaussian, and one of psf and psf-hash".to_owned().into());
+        }
+        Ok((reconstructions.first().copied(), path_space.first().copied()))
     }
 }
 
@@ -103,6 +127,12 @@ pub struct RenderSettings {
     pub rr_depth: u32,
     /// Reconstruction filter.
     pub filter: Filter,
+    /// Path space filter, if one is wanted.
+    pub path_filter: Option<PathFilterName>,
+    /// Its settings.
+    pub filtering: FilterSettings,
+    /// Samples per pixel that another rendering has taken, which the path space filter goes on from.
+    pub done: u64,
     /// Distance of ambient occlusion, in units of the scene.
     pub ao_distance: f32,
     /// Light paths, for the estimators that connect to them.
@@ -128,7 +158,7 @@ impl RenderSettings {
     }
 
     /// The settings of resampling; `--lights ris` asks for it too.
-    fn direct_settings(&self) -> ResamplingSettings {
+    pub(super) fn direct_settings(&self) -> ResamplingSettings {
         let mut settings = self.resampling.clone();
         if self.lights == LightSelection::Ris {
             settings.direct = DirectName::Ris;
@@ -149,6 +179,9 @@ impl RenderSettings {
             max_depth: u32::MAX,
             rr_depth: 5,
             filter: Filter::BOX,
+            path_filter: None,
+            filtering: FilterSettings::default(),
+            done: 0,
             ao_distance: f32::INFINITY,
             light_paths: LightPathSettings::default(),
             resampling: ResamplingSettings::default(),
@@ -167,18 +200,21 @@ pub fn estimate<S: Scene + Sync>(
     settings: &RenderSettings,
     observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Rendering, RenderError> {
+    let family = |name| {
+        let paths = match settings.budget {
+            Budget::Samples(samples) => u32::try_from(samples).unwrap_or(u32::MAX).clamp(1, 1 << 31),
+            Budget::Seconds(_) => PATHS_OF_TIMED_RENDERINGS,
+        };
+        AnyFamily::new(name, scene.sensor().resolution(), paths, settings.seed)
+    };
+    if let Some(name) = settings.path_filter {
+        return filtered::estimate(scene, settings, name, &family(settings.sampler)?, observe);
+    }
     match settings.sampler {
         SamplerName::Independent => estimate_with(scene, settings, &Independent::new(settings.seed), observe),
         SamplerName::Sobol => estimate_with(scene, settings, &OwenSobol::new(settings.seed), observe),
         // The others share one copy of the renderer.
-        name => {
-            let paths = match settings.budget {
-                Budget::Samples(samples) => u32::try_from(samples).unwrap_or(u32::MAX).clamp(1, 1 << 31),
-                Budget::Seconds(_) => PATHS_OF_TIMED_RENDERINGS,
-            };
-            let family = AnyFamily::new(name, scene.sensor().resolution(), paths, settings.seed)?;
-            estimate_with(scene, settings, &family, observe)
-        }
+        name => estimate_with(scene, settings, &family(name)?, observe),
     }
 }
 
@@ -315,7 +351,7 @@ fn estimate_with<S: Scene + Sync>(
 }
 
 /// Traces the photons that tell which lights contribute, if they are asked for.
-fn light_photons<S: Scene + Sync>(
+pub(super) fn light_photons<S: Scene + Sync>(
     scene: &S,
     samplers: &impl SamplerFamily,
     settings: &RenderSettings,
@@ -371,7 +407,8 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     if let Some([width, height]) = arguments.size {
         (description.camera.width, description.camera.height) = (width, height);
     }
-    let filter = arguments.filter.map_or(description.filter, FilterName::filter);
+    let (reconstruction, path_filter) = FilterName::sort(&arguments.filter)?;
+    let filter = reconstruction.unwrap_or(description.filter);
     let samples = arguments.spp.or(description.samples_per_pixel.map(u64::from)).unwrap_or(64);
     let max_depth = arguments.max_depth.or(description.max_depth).unwrap_or(u32::MAX);
     let name = description.name.clone();
@@ -406,6 +443,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         max_depth,
         rr_depth: arguments.rr_depth,
         filter,
+        path_filter,
+        filtering: arguments.filtering.clone(),
+        done: 0,
         light_paths: arguments.light_paths.clone(),
         resampling: arguments.resampling.clone(),
         light_photons: arguments.light_photons.clone(),

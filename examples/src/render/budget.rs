@@ -20,12 +20,14 @@ const MAX_PASS: u64 = 64;
 #[derive(Clone, Debug)]
 pub(super) struct Schedule {
     budget: Budget,
+    /// Samples per pixel that are not to be parted.
+    batch: u64,
     done: u64,
 }
 
 impl Schedule {
-    pub(super) fn new(budget: Budget) -> Self {
-        Self { budget, done: 0 }
+    pub(super) fn new(budget: Budget, batch: u64) -> Self {
+        Self { budget, batch: batch.max(1), done: 0 }
     }
 
     /// Samples per pixel so far, counting the pass that was handed out last.
@@ -36,16 +38,17 @@ impl Schedule {
     /// The samples of the next pass, given the time since the start; nothing if the budget is spent.
     pub(super) fn next_pass(&mut self, elapsed: f64) -> Option<Range<u64>> {
         let rate = if elapsed > 0.0 { self.done as f64 / elapsed } else { 0.0 };
-        let wanted = ((rate * PASS_SECONDS) as u64).clamp(1, MAX_PASS);
+        // Whole batches.
+        let wanted = ((rate * PASS_SECONDS) as u64).clamp(1, MAX_PASS).next_multiple_of(self.batch);
         let count = match self.budget {
             Budget::Samples(total) => wanted.min(total.saturating_sub(self.done)),
             Budget::Seconds(limit) => {
                 let remaining = rate * (limit - elapsed);
                 match self.done {
-                    0 => 1,
+                    0 => self.batch,
                     // Stop at the pass that comes closest to the limit.
                     _ if remaining < 0.5 => 0,
-                    _ => wanted.min(remaining.round() as u64).max(1),
+                    _ => wanted.min(remaining.round().max(1.0) as u64).next_multiple_of(self.batch),
                 }
             }
         };
@@ -70,7 +73,7 @@ mod tests {
 
     #[test]
     fn passes_cover_the_samples_once() {
-        let mut schedule = Schedule::new(Budget::Samples(100));
+        let mut schedule = Schedule::new(Budget::Samples(100), 1);
         let (mut next, mut elapsed) = (0, 0.0);
         while let Some(pass) = schedule.next_pass(elapsed) {
             assert_eq!(pass.start, next);
@@ -84,7 +87,7 @@ mod tests {
     #[test]
     fn time_is_kept_to_within_a_pass() {
         for limit in [0.0, 0.3, 5.0] {
-            let mut schedule = Schedule::new(Budget::Seconds(limit));
+            let mut schedule = Schedule::new(Budget::Seconds(limit), 1);
             let mut elapsed = 0.0;
             while let Some(pass) = schedule.next_pass(elapsed) {
                 elapsed += 0.02 * (pass.end - pass.start) as f64;
@@ -96,7 +99,18 @@ mod tests {
     }
 
     #[test]
+    fn batches_are_not_parted() {
+        let mut schedule = Schedule::new(Budget::Samples(30), 8);
+        let mut passes = Vec::new();
+        while let Some(pass) = schedule.next_pass(0.001 * passes.len() as f64) {
+            passes.push(pass);
+        }
+        assert_eq!((passes[0].start, passes[passes.len() - 1].end), (0, 30));
+        assert!(passes.iter().all(|pass| pass.start % 8 == 0));
+    }
+
+    #[test]
     fn no_samples_no_pass() {
-        assert_eq!(Schedule::new(Budget::Samples(0)).next_pass(0.0), None);
+        assert_eq!(Schedule::new(Budget::Samples(0), 1).next_pass(0.0), None);
     }
 }

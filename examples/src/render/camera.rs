@@ -33,6 +33,11 @@ pub struct PassCounts {
 
 /// Something that adds samples from the camera to a film.
 pub trait CameraPass: Sync {
+    /// Samples per pixel that belong together: passes are cut between them. The last ones may be fewer.
+    fn batch(&self) -> u64 {
+        1
+    }
+
     /// Adds the given samples to every pixel.
     ///
     /// # Errors
@@ -69,6 +74,15 @@ impl<S: Scene + Sync, F: SamplerFamily> PassContext<'_, S, F> {
         // The first pair of numbers is the place in the pixel, also of sequences that run through the image.
         let [dx, dy] = self.filter.sample(sampler.next_2d());
         let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
+        let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
+        (sampler, ray)
+    }
+
+    /// Another ray of the same pixel and sample, with numbers of its own.
+    pub fn extra_ray<C: Scene>(&self, scene: &C, place: [u32; 2], index: u64, number: u32) -> (F::Sampler, SensorRay) {
+        let mut sampler = self.sampler(place, index).fork(EXTRA_DOMAIN.wrapping_add(number));
+        let [dx, dy] = self.filter.sample(sampler.next_2d());
+        let raster = [place[0] as f32 + 0.5 + dx, place[1] as f32 + 0.5 + dy];
         let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
         (sampler, ray)
     }
@@ -184,6 +198,9 @@ pub trait SharingEstimator: Sync {
     }
 }
 
+/// The splats of some light paths, and what they took.
+pub(crate) type Splatted = (SplatBuffer, PassCounts);
+
 /// How samples share their light paths.
 #[derive(Clone, Copy, Debug)]
 pub enum Sharing {
@@ -209,6 +226,8 @@ const PIXEL_LIGHT_STREAMS: u64 = LIGHT_STREAM + 1;
 const PHOTON_STREAM: u64 = 1 << 41;
 /// The stream of paths from the sensor that say where photons are wanted.
 const IMPORTON_STREAM: u64 = PHOTON_STREAM + 1;
+/// Numbers of the first extra ray of a sample; those of the others follow.
+const EXTRA_DOMAIN: u32 = 0x6578_0000;
 /// Numbers for the connections to the sensor.
 const LENS_DOMAIN: u32 = 0x6c65_6e73;
 
@@ -251,8 +270,7 @@ impl<E: SharingEstimator> Shared<E> {
             for (place, pixel) in tile.pixels_mut() {
                 let stream = PIXEL_LIGHT_STREAMS + context.stream(place);
                 for index in samples.clone() {
-                    let sampler = |path: u32| context.samplers.sampler(stream, index * paths + u64::from(path));
-                    let shared = estimator.share(&scene, sampler, used.take());
+                    let shared = estimator.share(&scene, self.own_light_paths(context, place, index), used.take());
                     context.add_sample(&scene, place, pixel, index, |ray, sampler| {
                         estimator.radiance(&scene, &shared, ray, sampler)
                     });
@@ -273,19 +291,27 @@ impl<E: SharingEstimator> Shared<E> {
         add_splats(film, done)
     }
 
-    /// One sample per pixel, with light paths for each place in the tile.
-    fn interleaved<S: Scene + Sync, F: SamplerFamily>(
+    /// The numbers of the light paths that a sample has for itself.
+    pub(crate) fn own_light_paths<'a, S: Scene + Sync, F: SamplerFamily>(
         &self,
-        context: &PassContext<'_, S, F>,
-        film: &mut Film,
+        context: &'a PassContext<'_, S, F>,
+        place: [u32; 2],
+        index: u64,
+    ) -> impl FnMut(u32) -> F::Sampler + use<'a, S, F, E> {
+        let (stream, paths) = (PIXEL_LIGHT_STREAMS + context.stream(place), u64::from(self.estimator.paths()));
+        move |path: u32| context.samplers.sampler(stream, index * paths + u64::from(path))
+    }
+
+    /// Light paths for each place in the tile: blocks of one sequence.
+    pub(crate) fn share_patterns<'s, S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'s, S, F>,
         index: u64,
         tile: Interleaved,
-    ) -> Result<PassCounts, FilmError> {
+    ) -> (Vec<E::Shared<S::Vertex<'s>>>, Vec<Splatted>) {
         let estimator = &self.estimator;
         let (paths, patterns) = (u64::from(estimator.paths()), u64::from(tile.patterns()));
-
-        // Light paths: blocks of one sequence.
-        let (width, height) = (film.width(), film.height());
+        let [width, height] = context.scene.sensor().resolution();
         let share = |pattern: u32| {
             let scene = Counting::new(context.scene);
             let first = (index * patterns + u64::from(pattern)) * paths;
@@ -300,7 +326,19 @@ impl<E: SharingEstimator> Shared<E> {
             }
             (shared, (splats, PassCounts { rays: scene.counts(), light_paths }))
         };
-        let (shared, done): (Vec<_>, Vec<_>) = (0..tile.patterns()).into_par_iter().map(share).unzip();
+        (0..tile.patterns()).into_par_iter().map(share).unzip()
+    }
+
+    /// One sample per pixel, with light paths for each place in the tile.
+    fn interleaved<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'_, S, F>,
+        film: &mut Film,
+        index: u64,
+        tile: Interleaved,
+    ) -> Result<PassCounts, FilmError> {
+        let estimator = &self.estimator;
+        let (shared, done) = self.share_patterns(context, index, tile);
         let mut counts = add_splats(film, done)?;
 
         // Eye paths.
@@ -321,7 +359,7 @@ impl<E: SharingEstimator> Shared<E> {
 }
 
 /// Adds up the counts, and the splats in their order.
-fn add_splats(film: &mut Film, done: Vec<(SplatBuffer, PassCounts)>) -> Result<PassCounts, FilmError> {
+fn add_splats(film: &mut Film, done: Vec<Splatted>) -> Result<PassCounts, FilmError> {
     let mut counts = PassCounts::default();
     for (splats, pass) in done {
         if pass.light_paths > 0 {

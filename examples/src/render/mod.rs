@@ -109,6 +109,9 @@ pub enum RenderError {
     /// Lights cannot be selected by photons.
     #[error("lights cannot be selected by photons: {0}")]
     LightPhotons(#[from] crate::light_photons::LightPhotonsError),
+    /// The path space filter.
+    #[error(transparent)]
+    Filter(#[from] crate::filters::FilterError),
     /// Settings of photon maps.
     #[error(transparent)]
     Photons(#[from] crate::photons::PhotonError),
@@ -150,7 +153,7 @@ where
         let mut film = Film::new(width, height)?;
         let pool = thread_pool(self.threads)?;
         let start = Instant::now();
-        let mut schedule = Schedule::new(self.budget);
+        let mut schedule = Schedule::new(self.budget, self.camera.batch());
         let (mut rays, mut light_paths) = (RayCounts::default(), 0);
         let context = PassContext { scene: self.scene, samplers: self.samplers, filter: self.filter };
         let pixels = u64::from(width) * u64::from(height);

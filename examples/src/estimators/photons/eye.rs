@@ -4,6 +4,8 @@ use photon_map::Scratch;
 use qmc_sampling::Sampler;
 use scene_core::{Ray, RussianRoulette, ScatterSample, Scene, Spectrum, SurfacePoint, TransportMode, Vertex};
 
+use vpl_gi::{Found, Observer};
+
 use super::{Maps, Sharpness};
 use crate::estimators::{DirectLight, FirstHit, Scattered};
 
@@ -48,21 +50,30 @@ pub struct PhotonEye<D> {
 const GATHER_DOMAIN: u32 = 0x6761_0000;
 
 impl<D: DirectLight> PhotonEye<D> {
-    /// An estimate of the radiance that arrives along `ray`, and what the ray hit first.
-    pub fn radiance<S: Scene>(
+    /// An estimate of the radiance that arrives along `ray`, and what the ray hit first; `observer` looks on.
+    ///
+    /// Density estimates at vertices of the eye path are [`Found::Photons`]; what gather rays find, photons at their ends among them, is
+    /// [`Found::Connections`].
+    pub fn trace<'s, S: Scene, O: Observer<S::Vertex<'s>>>(
         &self,
-        scene: &S,
+        scene: &'s S,
         maps: &Maps,
         scratch: &mut Scratch,
         mut ray: Ray,
         sampler: &mut impl Sampler,
+        observer: &mut O,
     ) -> (S::Spectrum, Option<FirstHit>) {
         let mut radiance = S::Spectrum::ZERO;
         let mut throughput = S::Spectrum::splat(1.0);
         let (mut eta, mut first_hit, mut last) = (1.0, None, None);
         for length in 1..=self.max_depth {
             let vertex = scene.intersect(&ray);
-            radiance += self.direct.emission(scene, &ray, vertex.as_ref(), scattered(&last), throughput);
+            let emission = self.direct.emission(scene, &ray, vertex.as_ref(), scattered(&last), throughput);
+            if let Some(vertex) = &vertex {
+                observer.vertex(length, vertex, throughput);
+            }
+            observer.contribution(length, Found::Hit, emission);
+            radiance += emission;
             let Some(vertex) = vertex else { break };
             if length == 1 {
                 first_hit = Some(FirstHit::new(&ray, &vertex));
@@ -75,8 +86,12 @@ impl<D: DirectLight> PhotonEye<D> {
             let connects = vertex.is_connectible();
             let direct = self.direct.sample(scene, &vertex, length, connects, sampler);
             if connects {
-                let indirect = self.photons(scene, maps, scratch, &vertex, length, sampler);
-                radiance += throughput * (direct + indirect);
+                let photons = throughput * self.photons(maps, scratch, &vertex, length);
+                observer.contribution(length, Found::Photons, photons);
+                let gathered = self.gathered(scene, maps, scratch, &vertex, length, sampler);
+                let others = throughput * (direct + gathered);
+                observer.contribution(length, Found::Connections, others);
+                radiance += photons + others;
             }
 
             // Scatter. With final gathering there may be nothing to follow.
@@ -92,7 +107,9 @@ impl<D: DirectLight> PhotonEye<D> {
                     let ray = vertex.spawn_ray(sample.wi);
                     let hit = scene.intersect(&ray);
                     let throughput = throughput * sample.throughput;
-                    radiance += self.direct.emission(scene, &ray, hit.as_ref(), scattered(&from), throughput);
+                    let emission = self.direct.emission(scene, &ray, hit.as_ref(), scattered(&from), throughput);
+                    observer.contribution(length + 1, Found::Hit, emission);
+                    radiance += emission;
                 }
                 break;
             }
@@ -107,14 +124,30 @@ impl<D: DirectLight> PhotonEye<D> {
                 }
                 throughput *= S::Spectrum::splat(1.0 / survival);
             }
+            observer.scattered(length, &vertex, &sample);
             last = from;
             ray = vertex.spawn_ray(sample.wi);
         }
         (radiance, first_hit)
     }
 
-    /// What photons contribute at a vertex of this length.
-    fn photons<S: Scene>(
+    /// What photons contribute at a vertex of this length: caustics, and all else unless it is gathered.
+    fn photons<V: Vertex>(&self, maps: &Maps, scratch: &mut Scratch, vertex: &V, length: u32) -> V::Spectrum {
+        // The lengths of both paths add up.
+        let longest = self.longest(length);
+        let counts = |wi| !self.sharpness.is_left_to_eye_path(vertex, wi);
+        let caustics = match &maps.caustic {
+            Some(caustic) => caustic.radiance(vertex, longest, scratch, counts),
+            None => V::Spectrum::ZERO,
+        };
+        if self.gather > 0 {
+            return caustics;
+        }
+        caustics + maps.global.radiance(vertex, longest, scratch, counts)
+    }
+
+    /// What final gathering finds at a vertex of this length.
+    fn gathered<S: Scene>(
         &self,
         scene: &S,
         maps: &Maps,
@@ -123,22 +156,15 @@ impl<D: DirectLight> PhotonEye<D> {
         length: u32,
         sampler: &impl Sampler,
     ) -> S::Spectrum {
-        // The lengths of both paths add up.
-        let longest = self.longest(length);
-        let counts = |wi| !self.sharpness.is_left_to_eye_path(vertex, wi);
-        let caustics = match &maps.caustic {
-            Some(caustic) => caustic.radiance(vertex, longest, scratch, counts),
-            None => S::Spectrum::ZERO,
-        };
-        if self.gather == 0 {
-            return caustics + maps.global.radiance(vertex, longest, scratch, counts);
-        }
         let mut sum = S::Spectrum::ZERO;
+        if self.gather == 0 {
+            return sum;
+        }
         for ray in 0..self.gather {
             let domain = GATHER_DOMAIN.wrapping_add(length.wrapping_mul(self.gather)).wrapping_add(ray);
             sum += self.gather_ray(scene, maps, scratch, vertex, length, &mut sampler.fork(domain));
         }
-        caustics + sum * (1.0 / self.gather as f32)
+        sum * (1.0 / self.gather as f32)
     }
 
     /// One ray of final gathering.

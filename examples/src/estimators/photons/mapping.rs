@@ -39,6 +39,17 @@ pub struct PhotonMapping<D, C> {
 }
 
 impl<D: DirectLight, C: EmitterChoice + Sync> PhotonMapping<D, C> {
+    /// The maps, which are made first if they are not there yet, and the rays that this took.
+    pub fn maps<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (&Maps, RayCounts) {
+        let mut rays = RayCounts::default();
+        let maps = self.maps.get_or_init(|| {
+            let (maps, counts) = self.make(context);
+            rays = counts;
+            maps
+        });
+        (maps, rays)
+    }
+
     /// Makes the maps.
     pub fn make<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (Maps, RayCounts) {
         let (partition, primary, mut rays) = (self.partition, self.eye.gather > 0, RayCounts::default());
@@ -69,14 +80,9 @@ impl<D: DirectLight, C: EmitterChoice + Sync> CameraPass for PhotonMapping<D, C>
         film: &mut Film,
         samples: Range<u64>,
     ) -> Result<PassCounts, FilmError> {
-        let mut rays = RayCounts::default();
-        let maps = self.maps.get_or_init(|| {
-            let (maps, counts) = self.make(context);
-            rays = counts;
-            maps
-        });
+        let (maps, mut rays) = self.maps(context);
         rays += context.add_all(film, samples, |scene, scratch, ray, sampler| {
-            self.eye.radiance(scene, maps, scratch, ray, sampler)
+            self.eye.trace(scene, maps, scratch, ray, sampler, &mut ())
         });
         Ok(PassCounts { rays, light_paths: 0 })
     }

@@ -76,7 +76,7 @@ impl<D: DirectLight, C: EmitterChoice + Sync> CameraPass for ProgressivePhotons<
             let estimation = within(radius_of(self.radius, index), self.kernel);
             let maps = Maps { global: PhotonView::new(all, estimation), caustic: None };
             counts.rays += context.add_all(film, index..index + 1, |scene, scratch, ray, sampler| {
-                self.eye.radiance(scene, &maps, scratch, ray, sampler)
+                self.eye.trace(scene, &maps, scratch, ray, sampler, &mut ())
             });
         }
         Ok(counts)

@@ -3,7 +3,7 @@
 use qmc_sampling::{Interleaved, Replications, Sampler};
 use scene_core::film::LayeredImage;
 use scene_core::{EmitterChoice, PowerChoice, Ray, RussianRoulette, Scene, Spectrum, Vertex};
-use vpl_gi::{LightTracing, Observer, Residual, RobustIgi, VirtualPointLights};
+use vpl_gi::{Found, LightTracing, Observer, Residual, RobustIgi, VirtualPointLights};
 
 use super::{Cost, interval, mean, render};
 use crate::estimators::{FirstHit, VirtualLights};
@@ -74,13 +74,13 @@ struct Seen<S> {
 }
 
 impl<X: Vertex> Observer<X> for Seen<X::Spectrum> {
-    fn vertex(&mut self, length: u32, _: &X) {
+    fn vertex(&mut self, length: u32, _: &X, _: X::Spectrum) {
         self.length = length;
     }
 
-    fn contribution(&mut self, eye: u32, light: Option<u32>, value: X::Spectrum) {
+    fn contribution(&mut self, eye: u32, found: Found, value: X::Spectrum) {
         // Emission that is hit closes the stratum of the vertex before.
-        let stratum = if light.is_some() { eye } else { eye.saturating_sub(1) };
+        let stratum = if found != Found::Hit { eye } else { eye.saturating_sub(1) };
         if self.shown == Shown::Stratum(stratum) {
             self.sum += value;
         }

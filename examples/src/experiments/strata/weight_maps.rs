@@ -3,7 +3,7 @@
 use qmc_sampling::{Interleaved, Replications, Sampler};
 use scene_core::film::LayeredImage;
 use scene_core::{EmitterChoice, PowerChoice, Ray, RussianRoulette, Scene, Spectrum, Vertex};
-use vpl_gi::{Bidirectional, LightPaths, LightTracing, Observer, TechniqueSet, Threshold};
+use vpl_gi::{Bidirectional, Found, LightPaths, LightTracing, Observer, TechniqueSet, Threshold};
 
 use super::{Cost, mean, render};
 use crate::choices::{AnyHeuristic, AnyPathHeuristic};
@@ -64,9 +64,9 @@ struct OfTechnique<S> {
 }
 
 impl<X: Vertex> Observer<X> for OfTechnique<X::Spectrum> {
-    fn contribution(&mut self, eye: u32, light: Option<u32>, value: X::Spectrum) {
-        let is_direct = if self.samples_light { eye == 1 && light == Some(0) } else { eye == 2 && light.is_none() };
-        if is_direct {
+    fn contribution(&mut self, eye: u32, found: Found, value: X::Spectrum) {
+        let direct = if self.samples_light { (1, Found::Connection { light: 0 }) } else { (2, Found::Hit) };
+        if (eye, found) == direct {
             self.sum += value;
         }
     }

@@ -1,0 +1,105 @@
+//! `lichtwerk render --filter psf`: estimators whose paths are filtered.
+
+use std::ops::ControlFlow;
+
+use scene_core::{RussianRoulette, Scene, Sensor};
+use vpl_gi::{LightTracing, Residual, RobustIgi};
+
+use super::render::{EstimatorName, RenderSettings, light_photons};
+use crate::choices::AnyChoice;
+use crate::estimators::{AmbientOcclusion, FirstEvent, NoLightPaths, PathTracer, VirtualLights};
+use crate::filtering::{Filtered, Observable, Tracing};
+use crate::filters::{FilterError, PathFilterName};
+use crate::photons::PathLimits;
+use crate::render::{Job, Progress, RenderError, Rendering, Shared};
+use crate::resampling::AnyDirect;
+use crate::samplers::AnyFamily;
+
+/// Renders with the estimator that the settings name, and filters it.
+pub(super) fn estimate<S: Scene + Sync>(
+    scene: &S,
+    settings: &RenderSettings,
+    name: PathFilterName,
+    samplers: &AnyFamily,
+    observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+) -> Result<Rendering, RenderError> {
+    let choice = AnyChoice::new(settings.lights, scene.emitters());
+    let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
+    let limits = PathLimits { max_depth: settings.max_depth, roulette };
+    let run = Run { scene, settings, name, samplers };
+    match settings.estimator {
+        EstimatorName::Path | EstimatorName::Direct => {
+            let direct_only = settings.estimator == EstimatorName::Direct;
+            let resampling = settings.direct_settings();
+            let probes = resampling.probes(scene);
+            let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
+            let photons = light_photons(scene, samplers, settings)?;
+            let camera = PathTracer {
+                direct: match &photons {
+                    Some(photons) => AnyDirect::Photons(photons),
+                    None => resampling.direct(settings.heuristic, choice, resampled),
+                },
+                scattering: resampling.scattering(scene),
+                max_depth: if direct_only { settings.max_depth.min(2) } else { settings.max_depth },
+                roulette,
+                first_event: FirstEvent::Any,
+            };
+            run.render(&camera, observe)
+        }
+        EstimatorName::Ao => run.render(&AmbientOcclusion { distance: settings.ao_distance }, observe),
+        EstimatorName::PhotonMap => {
+            let resampling = settings.direct_settings();
+            let probes = resampling.probes(scene);
+            let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
+            let direct = resampling.direct(settings.heuristic, choice.clone(), resampled);
+            run.render(&settings.photons.mapping(scene, direct, choice, limits)?, observe)
+        }
+        EstimatorName::RobustIgi | EstimatorName::InstantRadiosity if !settings.photons.caustics => {
+            let drops = settings.estimator == EstimatorName::InstantRadiosity;
+            let eye = settings.light_paths.robust(scene, if drops { Residual::Drop } else { Residual::Scatter })?;
+            let eye = RobustIgi { max_depth: settings.max_depth, roulette, ..eye };
+            let light = LightTracing {
+                choice,
+                max_length: settings.max_depth.saturating_sub(2),
+                roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
+            };
+            let estimator = VirtualLights { eye, light, paths: settings.light_paths.light_paths, caustics: None };
+            run.render(&Shared { estimator, sharing: settings.light_paths.sharing() }, observe)
+        }
+        _ => Err(FilterError::Estimator.into()),
+    }
+}
+
+/// What all estimators have in common.
+struct Run<'a, S> {
+    scene: &'a S,
+    settings: &'a RenderSettings,
+    name: PathFilterName,
+    samplers: &'a AnyFamily,
+}
+
+impl<S: Scene + Sync> Run<'_, S> {
+    fn render(
+        &self,
+        estimator: &impl Observable,
+        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Rendering, RenderError> {
+        let Self { scene, settings, name, samplers } = *self;
+        let filtering = &settings.filtering;
+        let filter = filtering.filter(name, scene.sensor())?;
+        let [width, height] = scene.sensor().resolution();
+        let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));
+        let done = settings.done;
+        if !done.is_multiple_of(batch) {
+            return Err(FilterError::Continue { done, batch }.into());
+        }
+        let selection = filtering.selection()?;
+        let tracing = Tracing { estimator, selection, point_lights: filtering.filter_visibility, time: 0.0 };
+        let max_depth = settings.max_depth;
+        let camera =
+            Filtered { done, extra: filtering.filter_extra, max_depth, ..Filtered::new(tracing, filter, batch) };
+        let (budget, threads) = (settings.budget, settings.threads);
+        Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter: settings.filter, budget, threads }
+            .render(observe)
+    }
+}
