@@ -185,14 +185,25 @@ impl Guide {
         if (0.0..1.0).contains(&share) { Ok(Self { share }) } else { Err(GuidanceError::Share(share)) }
     }
 
-    fn share(&self, histogram: &DirectionalHistogram) -> f64 {
+    /// The share `b`.
+    #[must_use]
+    pub const fn share(&self) -> f64 {
+        self.share
+    }
+
+    /// The share of the directions that this histogram guides: 0 if it is empty.
+    ///
+    /// For renderers that sample by themselves: draw from the histogram with this probability, and otherwise from the
+    /// original density, whose Dirac deltas then count `1 / (1 - b)` times.
+    #[must_use]
+    pub fn share_at(&self, histogram: &DirectionalHistogram) -> f64 {
         if histogram.is_empty() { 0.0 } else { self.share }
     }
 
     /// The density of a direction in the mixture, given its `original` density.
     #[must_use]
     pub fn pdf_solid_angle(&self, histogram: &DirectionalHistogram, direction: [f32; 3], original: f64) -> f64 {
-        let share = self.share(histogram);
+        let share = self.share_at(histogram);
         let guided = if share > 0.0 { share * histogram.pdf_solid_angle(direction) } else { 0.0 };
         guided + (1.0 - share) * original
     }
@@ -209,7 +220,7 @@ impl Guide {
         pdf: impl FnOnce([f32; 3]) -> f64,
     ) -> Option<GuidedDirection> {
         let numbers = [u[1], u[2]];
-        let guided = u[0] < self.share(histogram);
+        let guided = u[0] < self.share_at(histogram);
         let direction = if guided { histogram.sample(numbers) } else { original(numbers) }?;
         let pdf_solid_angle = self.pdf_solid_angle(histogram, direction, pdf(direction));
         (pdf_solid_angle > 0.0).then_some(GuidedDirection { direction, pdf_solid_angle })
