@@ -3,7 +3,7 @@
 use crate::{Flux, Photon};
 
 /// Smallest probability: below it, no uniform number of 53 bits can decide.
-const LEAST: f64 = f64::EPSILON / 2.0;
+pub(crate) const LEAST: f64 = f64::EPSILON / 2.0;
 
 /// With which probability a photon is stored.
 ///
@@ -19,6 +19,8 @@ const LEAST: f64 = f64::EPSILON / 2.0;
 ///
 /// **Laws.** A probability lies in `[0, 1]`: above counts as 1, negative and below `2^-53` as 0. NaN counts as 1: a
 /// photon that nothing is known about is kept as it is. The same place and direction give the same answer.
+/// [`check_deposition`](crate::check::check_deposition) tests this on anybody's implementation, and
+/// [`check_positive`](crate::check::check_positive) that `p > 0`.
 ///
 /// **Source.** P2, section 2.1.
 ///

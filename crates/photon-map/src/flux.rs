@@ -5,7 +5,9 @@
 /// Implemented for `f32`, `f64` and `[f32; 3]`; importance is a flux, too (`f32`).
 ///
 /// **Laws**, up to round-off: `add` is commutative and associative with [`ZERO`](Self::ZERO) as its neutral element,
-/// `scale` distributes over `add`, and `scale(1.0)` changes no bit.
+/// `scale` distributes over `add` and multiplies every component, `scale(1.0)` changes no bit, and
+/// [`is_finite`](Self::is_finite) looks at all components. [`check_flux`](crate::check::check_flux) tests them on anybody's
+/// implementation.
 ///
 /// # Example
 /// A renderer with its own spectrum:
@@ -20,6 +22,9 @@
 ///     fn is_finite(self) -> bool { self.0.iter().all(|c| c.is_finite()) }
 /// }
 /// assert_eq!(Spectrum([1.0; 8]).add(Spectrum::ZERO).scale(2.0).0, [2.0; 8]);
+/// let samples = [Spectrum([1.0; 8]), Spectrum(std::array::from_fn(|i| i as f32))];
+/// photon_map::check::check_flux(&samples, |flux| flux.0.map(f64::from), 1e-6)?;
+/// # Ok::<(), photon_map::check::Violation>(())
 /// ```
 pub trait Flux: Copy {
     /// Nothing.

@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 mod caustics;
+pub mod check;
 mod density;
 mod deposition;
 mod direction;
