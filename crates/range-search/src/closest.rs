@@ -23,13 +23,6 @@ impl<'a> Closest<'a> {
         Self { k, full, last: Neighbor::new(u32::MAX, radius_squared), found }
     }
 
-    /// What is farther away than this is not wanted; what is as far may be.
-    #[cfg(feature = "obvhs")]
-    #[inline(always)]
-    pub(crate) fn bound(&self) -> f32 {
-        self.last.distance_squared()
-    }
-
     #[inline(always)]
     pub(crate) fn push(&mut self, neighbor: Neighbor) {
         if neighbor <= self.last {

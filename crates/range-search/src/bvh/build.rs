@@ -1,4 +1,4 @@
-//! Blocks along a Morton curve, and the hierarchy over them.
+//! Blocks of points that are near each other, and the hierarchy over them.
 
 use core::time::Duration;
 
@@ -20,11 +20,44 @@ pub(super) fn build<P>(points: &[P], position: impl Fn(&P) -> [f32; 3]) -> Resul
     let mut kept: Vec<(u32, [f32; 3])> =
         (0..).zip(points.iter().map(position)).filter(|(_, point)| is_finite(*point)).collect();
     let unit = Unit::new(&kept);
-    kept.sort_by_cached_key(|(id, point)| (unit.morton(*point), *id));
+    sort_into_blocks(&mut kept);
     let leaves = leaves(&kept);
     let points_of_slots = Lanes::from_points(&kept);
     let nodes = hierarchy(&leaves, &unit);
     Ok(Bvh { nodes, points: points_of_slots, skipped: points.len() - kept.len() })
+}
+
+/// Halves the points along the longest axis again and again, at whole blocks. The points of a block are in the order of
+/// their ids.
+///
+/// Blocks cut from a space-filling curve would be as good but for those that hold both ends of a jump: their boxes, as
+/// large as the jump, meet most queries.
+fn sort_into_blocks(points: &mut [(u32, [f32; 3])]) {
+    let mut waiting = vec![points];
+    while let Some(points) = waiting.pop() {
+        if points.len() <= WIDTH {
+            points.sort_unstable_by_key(|(id, _)| *id);
+            continue;
+        }
+        let axis = longest_axis(points);
+        let middle = (points.len() / 2).next_multiple_of(WIDTH);
+        points.select_nth_unstable_by(middle, |a, b| a.1[axis].total_cmp(&b.1[axis]).then(a.0.cmp(&b.0)));
+        let (left, right) = points.split_at_mut(middle);
+        waiting.extend([right, left]);
+    }
+}
+
+fn longest_axis(points: &[(u32, [f32; 3])]) -> usize {
+    let (mut min, mut max) = (points[0].1, points[0].1);
+    for (_, point) in points {
+        for axis in 0..3 {
+            min[axis] = min[axis].min(point[axis]);
+            max[axis] = max[axis].max(point[axis]);
+        }
+    }
+    // Differences may overflow.
+    let extent = [0, 1, 2].map(|axis| f64::from(max[axis]) - f64::from(min[axis]));
+    (1..3).fold(0, |longest, axis| if extent[axis] > extent[longest] { axis } else { longest })
 }
 
 /// A leaf for each block; blocks in one and the same place share one.
@@ -75,25 +108,9 @@ impl Unit {
         [0, 1, 2].map(|axis| (f64::from(point[axis]) - self.min[axis]) * self.inverse)
     }
 
-    /// Position along a Morton curve of 21 bits an axis.
-    fn morton(&self, point: [f32; 3]) -> u64 {
-        let [x, y, z] = self.map(point).map(|x| spread((x * f64::from((1 << 21) - 1)) as u64));
-        x | (y << 1) | (z << 2)
-    }
-
     fn aabb(&self, node: &Node) -> Aabb {
         Aabb { min: self.map(node.min).map(|x| x as f32).into(), max: self.map(node.max).map(|x| x as f32).into() }
     }
-}
-
-/// Moves 21 bits three places apart.
-fn spread(x: u64) -> u64 {
-    let x = x & 0x001f_ffff;
-    let x = (x | (x << 32)) & 0x001f_0000_0000_ffff;
-    let x = (x | (x << 16)) & 0x001f_0000_ff00_00ff;
-    let x = (x | (x << 8)) & 0x100f_00f0_0f00_f00f;
-    let x = (x | (x << 4)) & 0x10c3_0c30_c30c_30c3;
-    (x | (x << 2)) & 0x1249_2492_4924_9249
 }
 
 fn hierarchy(leaves: &[Node], unit: &Unit) -> Vec<Node> {
@@ -142,7 +159,7 @@ fn adopt(binary: &Bvh2, leaves: &[Node]) -> Option<Vec<Node>> {
     Some(nodes)
 }
 
-/// Halves the curve again and again.
+/// Halves the sequence of the blocks again and again.
 fn balanced(leaves: &[Node]) -> Vec<Node> {
     let mut nodes = vec![leaves[0]];
     let mut waiting = vec![(leaves, 0)];

@@ -2,6 +2,7 @@
 
 mod build;
 
+use core::convert::Infallible;
 use core::ops::{ControlFlow, Range};
 
 use crate::ball::{Ball, distance_squared};
@@ -13,6 +14,9 @@ use crate::neighbor::Neighbor;
 
 /// Nodes above each other at most: each leaves one waiting.
 const MAX_DEPTH: usize = 64;
+
+/// Nodes that wait at most while near points are looked for.
+const FRONTIER: usize = 64;
 
 /// A box, and what is in it.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +41,14 @@ impl Node {
 /// A bounding volume hierarchy, built by the crate [obvhs](https://crates.io/crates/obvhs) over blocks of eight points. Needs the feature
 /// `obvhs`.
 ///
-/// Points are sorted along a Morton curve and cut into blocks, whose boxes obvhs builds a binary hierarchy over. Blocks in one place are
-/// one leaf. Where too many boxes share a centre, which takes obvhs quadratic time, or its hierarchy gets too deep, the hierarchy is the
-/// balanced one over the curve.
+/// Points are halved along the longest axis until they are blocks, whose boxes obvhs builds a binary hierarchy over. Blocks in one place
+/// are one leaf. Where too many boxes share a centre, which takes obvhs quadratic time, or its hierarchy gets too deep, the hierarchy is
+/// the balanced one over the blocks as they lie.
 ///
 /// Knows no cell size, as [`KdTree`](crate::KdTree); stops early, and needs less memory.
 ///
 /// Order of visits: the hierarchy's, a function of the input. Cost: building sorts, `n log n`; a query visits the nodes that meet the
-/// ball. Memory: 16 bytes per point, and about 8 for the nodes.
+/// ball; one for the nearest points looks for a ball first. Memory: 16 bytes per point, and about 8 for the nodes.
 ///
 /// Source: D. Meister and J. Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction* (2018).
 ///
@@ -132,41 +136,90 @@ impl RangeIndex for Bvh {
         f: impl FnMut(usize, f32) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let Some(ball) = Ball::new(center, radius) else { return ControlFlow::Continue(()) };
-        let leaves = Leaves { bvh: self, ball, waiting: [0; MAX_DEPTH + 1], len: self.nodes.len().min(1) };
-        self.points.scan(&ball, leaves, f)
+        self.points.scan(&ball, self.leaves(ball), f)
     }
 
-    /// Visits the nearer of two nodes first, and none farther away than the last of the nearest so far.
+    /// Some points near the centre give a radius that holds the nearest ones; all within it are tested together.
     fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
         out.clear();
-        let (Some(ball), Some(root)) = (Ball::new(center, max_radius), self.nodes.first()) else { return };
+        let Some(ball) = Ball::new(center, max_radius) else { return };
         if k == 0 {
             return;
         }
+        let radius_squared = self.bound_of_nearest(center, k, out).min(ball.radius_squared);
+        let ball = Ball { radius_squared, ..ball };
         let mut closest = Closest::new(k, ball.radius_squared, out);
-        let mut waiting = [(0, 0.0); MAX_DEPTH + 1];
-        waiting[0] = (0, root.distance_squared(center));
-        let mut len = 1;
-        while len > 0 {
-            len -= 1;
-            let (node, nearest_in_box) = waiting[len];
-            if nearest_in_box > closest.bound() {
-                continue;
-            }
-            let node: &Node = &self.nodes[node];
-            if node.blocks > 0 {
-                // The bound changes from leaf to leaf, so that there is nothing to test together.
-                for slot in self.slots(node) {
-                    let distance_squared = distance_squared(self.points.position(slot), center);
-                    closest.push(Neighbor::new(self.points.id(slot), distance_squared));
-                }
-                continue;
-            }
-            let children = [0, 1].map(|child| node.first as usize + child);
-            let [a, b] = children.map(|child| (child, self.nodes[child].distance_squared(center)));
-            (waiting[len], waiting[len + 1]) = if a.1 <= b.1 { (b, a) } else { (a, b) };
-            len += 2;
-        }
+        let ControlFlow::Continue(()) = self.points.scan(&ball, self.leaves(ball), |id, distance_squared| {
+            closest.push(Neighbor::new(id as u32, distance_squared));
+            ControlFlow::<Infallible>::Continue(())
+        });
         closest.finish();
+    }
+}
+
+impl Bvh {
+    #[inline(always)]
+    fn leaves(&self, ball: Ball) -> Leaves<'_> {
+        Leaves { bvh: self, ball, waiting: [0; MAX_DEPTH + 1], len: self.nodes.len().min(1) }
+    }
+
+    /// A squared radius that holds the `k > 0` nearest points: that of the `k`-th nearest among `2 k` points of the leaves
+    /// whose boxes are nearest. Infinite if there are fewer than `k`.
+    #[inline(always)]
+    fn bound_of_nearest(&self, center: [f32; 3], k: usize, found: &mut Vec<Neighbor>) -> f32 {
+        let enough = k.saturating_mul(2).max(WIDTH);
+        let mut frontier = Frontier::new();
+        if !self.nodes.is_empty() {
+            frontier.insert(Neighbor::new(0, 0.0));
+        }
+        while found.len() < enough
+            && let Some(nearest) = frontier.pop()
+        {
+            let node = &self.nodes[nearest.id()];
+            if node.blocks > 0 {
+                let slots = self.slots(node).take(enough - found.len());
+                found.extend(slots.map(|slot| {
+                    Neighbor::new(self.points.id(slot), distance_squared(self.points.position(slot), center))
+                }));
+            } else {
+                for child in [node.first, node.first + 1] {
+                    frontier.insert(Neighbor::new(child, self.nodes[child as usize].distance_squared(center)));
+                }
+            }
+        }
+        if found.len() < k { f32::INFINITY } else { found.select_nth_unstable(k - 1).1.distance_squared() }
+    }
+}
+
+/// Nodes that wait, the nearest one last. If there are too many the farthest are forgotten.
+struct Frontier {
+    nodes: [Neighbor; FRONTIER],
+    len: usize,
+}
+
+impl Frontier {
+    fn new() -> Self {
+        Self { nodes: [Neighbor::new(0, 0.0); FRONTIER], len: 0 }
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Neighbor> {
+        self.len = self.len.checked_sub(1)?;
+        Some(self.nodes[self.len])
+    }
+
+    #[inline(always)]
+    fn insert(&mut self, node: Neighbor) {
+        if self.len == FRONTIER {
+            self.nodes.copy_within(1.., 0);
+            self.len -= 1;
+        }
+        let mut place = self.len;
+        while place > 0 && self.nodes[place - 1] < node {
+            self.nodes[place] = self.nodes[place - 1];
+            place -= 1;
+        }
+        self.nodes[place] = node;
+        self.len += 1;
     }
 }
