@@ -89,6 +89,12 @@ impl Lanes {
         self.blocks[slot / WIDTH].set(slot % WIDTH, id, point);
     }
 
+    /// Makes ids of the slots.
+    pub(crate) fn number(&mut self) {
+        let ids = self.blocks.iter_mut().flat_map(|block| &mut block.ids);
+        ids.take(self.len).zip(0..).for_each(|(id, slot)| *id = slot);
+    }
+
     /// Fills all slots, so many at a time on each thread, with ids and points that begin at a slot.
     #[cfg(feature = "rayon")]
     pub(crate) fn par_fill<I: Iterator<Item = (u32, [f32; 3])>>(

@@ -256,3 +256,17 @@ fn payloads_follow_the_order_of_slots() {
     grid.restore(&reordered, &mut restored);
     assert_eq!(restored, points);
 }
+
+/// Renumbering is building again over what was reordered: dense and hashed, with and without points that are skipped.
+#[test]
+fn renumbered_grids_are_those_over_reordered_payloads() {
+    let mut sets = point_sets();
+    sets.push(("surfaces", surfaces(60_000)));
+    for (name, points) in sets {
+        for cell_size in [0.2, 0.003, 30.0] {
+            let grid = HashGrid::build(&points, |p| *p, cell_size).unwrap();
+            let again = HashGrid::build(&grid.reorder(&points), |p| *p, cell_size).unwrap();
+            assert_eq!(format!("{:?}", grid.renumbered()), format!("{again:?}"), "{name}, {cell_size}");
+        }
+    }
+}

@@ -116,15 +116,13 @@ impl<F: Flux> PhotonMap<F> {
 
     fn sorted(
         photons: Photons<F>,
-        grid: impl Fn(&[PackedPhoton<F>]) -> Result<HashGrid, BuildError>,
+        grid: impl FnOnce(&[PackedPhoton<F>]) -> Result<HashGrid, BuildError>,
     ) -> Result<Self, MapError> {
         let (unsorted, paths) = parts(photons)?;
-        let order = grid(&unsorted).map_err(MapError::Index)?;
-        // In the order of the grid photons of a cell lie in a row; built again, the grid leaves them where they are.
-        let photons = order.reorder(&unsorted);
-        drop((unsorted, order));
-        let index = grid(&photons).map_err(MapError::Index)?;
-        Ok(Self { photons, index, paths })
+        let grid = grid(&unsorted).map_err(MapError::Index)?;
+        // In the order of the grid photons of a cell lie in a row.
+        let photons = grid.reorder(&unsorted);
+        Ok(Self { photons, index: grid.renumbered(), paths })
     }
 
     /// Bytes on the heap.

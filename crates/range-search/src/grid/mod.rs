@@ -113,6 +113,24 @@ impl HashGrid {
         self.order().map(|id| payloads[id].clone()).collect()
     }
 
+    /// The grid over reordered payloads, whose ids are slots: what building it again over them would give, bit for bit.
+    /// Nothing is skipped any more.
+    ///
+    /// ```
+    /// use range_search::{HashGrid, RangeIndex};
+    /// let points = [[2.0_f32, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
+    /// let grid = HashGrid::build(&points, |p| *p, 1.0)?;
+    /// let sorted = grid.reorder(&points);
+    /// let grid = grid.renumbered();
+    /// grid.for_each_within([0.0; 3], 1.0, |slot, d2| assert_eq!(range_search::distance_squared(sorted[slot], [0.0; 3]), d2));
+    /// # Ok::<(), range_search::BuildError>(())
+    /// ```
+    #[must_use]
+    pub fn renumbered(mut self) -> Self {
+        self.points.number();
+        Self { skipped: 0, ..self }
+    }
+
     /// Undoes [`reorder`](Self::reorder): what is in a slot goes to `out[id]`. Ids of points that were skipped keep what they have.
     ///
     /// # Panics
