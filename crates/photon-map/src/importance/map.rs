@@ -27,6 +27,7 @@ use crate::{DensityEstimation, DirectionalHistogram, GatherPoint, PhotonMap, Scr
 /// ```
 /// use photon_map::{
 ///     DensityEstimation, DirectionalHistogram, Gather, GatherPoint, ImportanceMap, Kernel, Photon, PhotonMap, Photons,
+///     Scratch,
 /// };
 /// let mut importons = Photons::new();
 /// importons.store(Photon::new([0.0; 3], [0.6, 0.0, 0.8], 3.0));
@@ -37,7 +38,7 @@ use crate::{DensityEstimation, DirectionalHistogram, GatherPoint, PhotonMap, Scr
 /// assert_eq!(importance.at([2.0, 0.0, 0.0]), 0.0);
 ///
 /// let mut histogram = DirectionalHistogram::new(8, 8)?;
-/// importance.directions(&GatherPoint::at([0.5, 0.0, 0.0]), &mut histogram);
+/// importance.directions(&GatherPoint::at([0.5, 0.0, 0.0]), &mut histogram, &mut Scratch::default());
 /// assert!(histogram.pdf_solid_angle([0.6, 0.01, 0.8]) > 5.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -73,21 +74,17 @@ impl<I: RangeIndex> ImportanceMap<I> {
     /// Fills a histogram with the directions that the importons around a place came from, each with its importance
     /// and kernel: where scattered light is wanted. What was in the histogram is forgotten.
     ///
-    /// `at` with a normal leaves importons of the other side out.
-    pub fn directions(&self, at: &GatherPoint, histogram: &mut DirectionalHistogram) {
+    /// `at` with a normal leaves importons of the other side out. The nearest few dozens are enough, and cost less than
+    /// all within a radius: see [`Gather::nearest`](crate::Gather::nearest).
+    pub fn directions(&self, at: &GatherPoint, histogram: &mut DirectionalHistogram, scratch: &mut Scratch) {
         histogram.clear();
         let (gather, kernel) = (self.estimation.gather, self.estimation.kernel);
-        gather.for_each(
-            self.importons.index(),
-            at.position(),
-            &mut Scratch::default(),
-            |disk, id, distance_squared| {
-                let importon = &self.importons.photons()[id];
-                if let Some(d2) = at.distance_squared(importon, distance_squared) {
-                    histogram.add(importon.wi(), importon.flux() * disk.weight(&kernel, d2) as f32);
-                }
-            },
-        );
+        gather.for_each(self.importons.index(), at.position(), scratch, |disk, id, distance_squared| {
+            let importon = &self.importons.photons()[id];
+            if let Some(d2) = at.distance_squared(importon, distance_squared) {
+                histogram.add(importon.wi(), importon.flux() * disk.weight(&kernel, d2) as f32);
+            }
+        });
     }
 
     /// The importons.

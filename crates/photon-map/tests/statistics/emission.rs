@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use estimator_checks::{Moments, Sampled, SamplingCheck, Sphere, Uniforms, chi_square_counts, mean_is};
 use photon_map::{
     Bound, DepositionExt, DirectionalHistogram, GatherPoint, Guide, ImportanceScale, ImportonDeposition, LightTable,
-    Photon, ProjectionMap, sphere_direction,
+    Photon, ProjectionMap, Scratch, sphere_direction,
 };
 
 use crate::{SUITE, deposition::importance};
@@ -129,10 +129,10 @@ fn guidance_and_deposition_go_together() {
 #[test]
 fn directions_of_importance_are_those_of_the_importons() {
     let (importance, mut histogram) = (importance(), DirectionalHistogram::new(4, 2).unwrap());
-    importance.directions(&GatherPoint::on([0.2, 0.5, 0.0], [0.0, 0.0, 1.0]), &mut histogram);
+    importance.directions(&GatherPoint::on([0.2, 0.5, 0.0], [0.0, 0.0, 1.0]), &mut histogram, &mut Scratch::default());
     assert!(histogram.pdf_solid_angle([0.3, 0.1, 1.0]) > 0.0);
     assert_eq!(histogram.pdf_solid_angle([0.3, 0.1, -1.0]), 0.0);
-    importance.directions(&GatherPoint::on([0.2, 0.5, 0.0], [0.0, 0.0, -1.0]), &mut histogram);
+    importance.directions(&GatherPoint::on([0.2, 0.5, 0.0], [0.0, 0.0, -1.0]), &mut histogram, &mut Scratch::default());
     assert!(histogram.is_empty());
 }
 
