@@ -13,6 +13,7 @@ mod frame;
 pub mod luxcore;
 #[cfg(feature = "reference")]
 pub mod material;
+pub mod medium;
 #[cfg(feature = "mitsuba")]
 pub mod mitsuba;
 mod ray;

@@ -21,7 +21,7 @@ use scene_core::{
     WalkStart, random_walk,
 };
 
-static SUITE: Suite = Suite::with_share("scene-core closed forms", 64, 1e-7);
+static SUITE: Suite = Suite::with_share("scene-core closed forms", 64, 8e-8);
 
 /// Lambert's formula for the irradiance of a polygon of unit radiance in front of a surface element:
 /// `E = 1/2 sum over edges of angle(r_i, r_{i+1}) n . (r_i x r_{i+1}) / |r_i x r_{i+1}|` (Lambert 1760; Arvo 1994, equation 2).

@@ -6,6 +6,7 @@ use glam::Vec3A;
 
 use super::surface::{Lobe, Surface};
 use super::warp::{ONE_MINUS_EPSILON, UNIFORM_HEMISPHERE_PDF, uniform_hemisphere};
+use crate::medium::Medium;
 use crate::traits::{Rgb, TransportMode};
 
 /// A direction in which a path goes on, in the local frame.
@@ -124,6 +125,12 @@ impl<'m> Bsdf<'m> {
             }
             _ => None,
         }
+    }
+
+    /// The participating medium behind the surface, opposite to the normal, if it is the boundary of one.
+    #[inline]
+    pub fn interior(&self) -> Option<&'m Medium<Rgb>> {
+        self.lobe.interior()
     }
 
     /// From 0 for Dirac deltas alone to 1 for diffuse: the smallest roughness of the other components, of the front side.

@@ -14,6 +14,7 @@ use super::rough_plastic::RoughPlastic;
 use super::surface::Surface;
 use super::{Bsdf, Material, MaterialError};
 use crate::frame::Frame;
+use crate::medium::Medium;
 use crate::texture::Texture;
 use crate::traits::{Rgb, Sharpness, Spectrum};
 
@@ -39,8 +40,9 @@ impl Material {
     /// from behind is a dent); masks pass light whatever else is wrapped around them.
     ///
     /// # Errors
-    /// As [`validate`](Self::validate); and if a transmissive material is inside a two-sided one, or two different sides
-    /// have wrappers of their own (wrap the two-sided material instead).
+    /// As [`validate`](Self::validate); and if a transmissive material is inside a two-sided one, two different sides
+    /// have wrappers of their own (wrap the two-sided material instead), or a medium is inside anything but one smooth or rough
+    /// dielectric.
     pub fn compile(self) -> Result<CompiledMaterial, MaterialError> {
         self.validate()?;
         Wrappers::default().flatten(self)
@@ -54,6 +56,7 @@ struct Wrappers {
     evaluate_only: bool,
     opacity: Vec<Texture>,
     normals: Vec<NormalModifier>,
+    medium: Option<Medium<Rgb>>,
 }
 
 impl Wrappers {
@@ -80,6 +83,16 @@ impl Wrappers {
                     self.two_sided = true;
                     *front
                 }
+                Material::Filled { boundary, .. } if self.medium.is_some() => {
+                    return Err(nesting("filled", boundary.name(), ": it holds a medium already"));
+                }
+                Material::Filled { medium, boundary } => {
+                    self.medium = Some(medium);
+                    *boundary
+                }
+                Material::TwoSided { front, back: Some(_) } if self.medium.is_some() => {
+                    return Err(nesting("filled", front.name(), " of two sides: only dielectrics can hold a medium"));
+                }
                 Material::TwoSided { front, back: Some(back) } => {
                     let (front, back) = (bare_side(*front)?, bare_side(*back)?);
                     self.two_sided = true;
@@ -87,7 +100,12 @@ impl Wrappers {
                 }
                 bare => {
                     let name = bare.name();
-                    let front = surface(bare)?;
+                    let mut front = surface(bare)?;
+                    if let Some(medium) = self.medium
+                        && !front.fill(medium)
+                    {
+                        return Err(nesting("filled", name, ": only smooth and rough dielectrics can hold a medium"));
+                    }
                     if self.two_sided && front.is_transmissive() {
                         return Err(nesting("twosided", name, ": it is transmissive"));
                     }
@@ -98,7 +116,7 @@ impl Wrappers {
     }
 
     fn finish(self, front: Surface, back: Option<Surface>) -> CompiledMaterial {
-        let Self { two_sided, evaluate_only, opacity, normals } = self;
+        let Self { two_sided, evaluate_only, opacity, normals, medium: _ } = self;
         let is_anisotropic = front.is_anisotropic() || back.as_ref().is_some_and(Surface::is_anisotropic);
         let needs_tangents = is_anisotropic || !normals.is_empty();
         CompiledMaterial { front, back, two_sided, evaluate_only, opacity, normals, needs_tangents }
@@ -170,7 +188,8 @@ fn surface(material: Material) -> Result<Surface, MaterialError> {
         | Material::TwoSided { .. }
         | Material::BumpMap { .. }
         | Material::NormalMap { .. }
-        | Material::EvaluateOnly(_)) => {
+        | Material::EvaluateOnly(_)
+        | Material::Filled { .. }) => {
             return Err(nesting("twosided", wrapper.name(), " of two different sides: put it outside"));
         }
     })
@@ -193,6 +212,11 @@ impl CompiledMaterial {
 
     fn opacity_at(&self, look_up: impl Fn(&Texture) -> Rgb) -> f32 {
         self.opacity.iter().map(|texture| look_up(texture).luminance().clamp(0.0, 1.0)).product()
+    }
+
+    /// The participating medium behind the surface, opposite to the normal, if it is the boundary of one.
+    pub fn interior(&self) -> Option<&Medium<Rgb>> {
+        self.front.interior()
     }
 
     /// Whether [`shading_frame`](Self::shading_frame) makes use of the tangents: for normals that are perturbed, and for

@@ -1,5 +1,6 @@
 //! Materials as data.
 
+use crate::medium::Medium;
 use crate::texture::Texture;
 use crate::traits::Rgb;
 
@@ -178,6 +179,13 @@ pub enum Material {
     /// Keeps only the values of a reflecting material and samples the hemisphere uniformly: a material about which a
     /// sampling technique knows nothing. Dirac components and transmission are lost.
     EvaluateOnly(Box<Material>),
+    /// The boundary of a participating medium: a smooth or rough dielectric, on a closed surface.
+    Filled {
+        /// What is inside, opposite to the normal.
+        medium: Medium<Rgb>,
+        /// The interface.
+        boundary: Box<Material>,
+    },
 }
 
 impl Material {
@@ -190,6 +198,12 @@ impl Material {
     #[must_use]
     pub fn two_sided(self) -> Self {
         Self::TwoSided { front: Box::new(self), back: None }
+    }
+
+    /// This dielectric as the boundary of `medium`.
+    #[must_use]
+    pub fn filled_with(self, medium: Medium<Rgb>) -> Self {
+        Self::Filled { medium, boundary: Box::new(self) }
     }
 
     /// What it is called in files and messages.
@@ -210,6 +224,7 @@ impl Material {
             Self::BumpMap { .. } => "bumpmap",
             Self::NormalMap { .. } => "normalmap",
             Self::EvaluateOnly(_) => "evaluate-only",
+            Self::Filled { .. } => "filled",
         }
     }
 }

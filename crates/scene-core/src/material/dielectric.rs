@@ -6,6 +6,7 @@ use super::BsdfSample;
 use super::conductor::{ReflectionLobe, mirrored, sampled_masking};
 use super::fresnel::refraction;
 use super::microfacet::Microfacet;
+use crate::medium::Medium;
 use crate::texture::Texture;
 use crate::traits::{Rgb, TransportMode};
 
@@ -17,6 +18,8 @@ pub(super) struct Interface {
     inverse_eta: f32,
     pub(super) specular_reflectance: Texture,
     pub(super) specular_transmittance: Texture,
+    /// What is inside, unless it is clear.
+    pub(super) interior: Option<Medium<Rgb>>,
 }
 
 impl Interface {
@@ -26,6 +29,7 @@ impl Interface {
             inverse_eta: ext_ior / int_ior,
             specular_reflectance: reflectance,
             specular_transmittance: transmittance,
+            interior: None,
         }
     }
 

@@ -9,6 +9,7 @@ use super::phong::Phong;
 use super::plastic::Plastic;
 use super::rough_plastic::RoughPlastic;
 use super::{BsdfSample, diffuse};
+use crate::medium::Medium;
 use crate::texture::Texture;
 use crate::traits::{Rgb, Sharpness, TransportMode};
 
@@ -50,6 +51,26 @@ impl Surface {
     /// Whether light passes to the other side.
     pub(super) fn is_transmissive(&self) -> bool {
         matches!(self, Self::Dielectric(_) | Self::ThinDielectric(_) | Self::RoughDielectric(_))
+    }
+
+    /// The medium that it is the boundary of.
+    pub(super) fn interior(&self) -> Option<&Medium<Rgb>> {
+        match self {
+            Self::Dielectric(m) => m.interior.as_ref(),
+            Self::RoughDielectric(m) => m.interface.interior.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Makes it the boundary of a medium; false if it cannot be one.
+    pub(super) fn fill(&mut self, medium: Medium<Rgb>) -> bool {
+        let interface = match self {
+            Self::Dielectric(m) => m,
+            Self::RoughDielectric(m) => &mut m.interface,
+            _ => return false,
+        };
+        interface.interior = Some(medium);
+        true
     }
 
     /// Whether it changes when turned about the normal.
@@ -112,6 +133,18 @@ impl Surface {
             Self::CookTorrance(m) => {
                 Lobe::CookTorrance(m, [look_up(&m.diffuse_reflectance), look_up(&m.specular_reflectance)])
             }
+        }
+    }
+}
+
+impl<'m> Lobe<'m> {
+    /// The medium that it is the boundary of.
+    #[inline]
+    pub(super) fn interior(&self) -> Option<&'m Medium<Rgb>> {
+        match self {
+            Self::Dielectric(m, _) => m.interior.as_ref(),
+            Self::RoughDielectric(m, _) => m.interface.interior.as_ref(),
+            _ => None,
         }
     }
 }

@@ -61,7 +61,8 @@ impl Material {
                 check.finite("normals", normals)?;
                 inner.validate()
             }
-            Self::EvaluateOnly(inner) => inner.validate(),
+            // Media are valid by construction.
+            Self::EvaluateOnly(inner) | Self::Filled { boundary: inner, .. } => inner.validate(),
         }
     }
 }

@@ -20,16 +20,22 @@ impl Importer<'_> {
         if let Some((second, _)) = bsdfs.next() {
             return Err(second.place.invalid("a shape has at most one bsdf"));
         }
-        if let Some(&id) = self.material_ids.get(&index) {
+        let medium = self.interior(shape, index);
+        if let Some(&id) = self.material_ids.get(&(index, medium)) {
             return Ok(id);
         }
         let material = match index {
             Some(index) => self.bsdf(&document.objects[index], 0)?,
             None => Material::Diffuse { reflectance: 0.5.into() },
         };
+        let material = match medium {
+            Some(medium) => self.filled(material, &document.objects[medium])?,
+            None => material,
+        };
         self.materials.push(material);
         let id = MaterialId((self.materials.len() - 1) as u32);
-        self.material_ids.insert(index, id);
+        self.material_ids.insert((index, medium), id);
+        self.used_bsdfs.extend(index);
         Ok(id)
     }
 

@@ -31,8 +31,10 @@ pub(super) struct Importer<'d> {
     /// Triangles that were dropped because they have no area.
     pub(super) without_area: usize,
     pub(super) primitives: HashMap<(&'static str, bool), ShapeId>,
-    /// Materials by the object that they come from; nothing is the default.
-    pub(super) material_ids: HashMap<Option<usize>, MaterialId>,
+    /// Materials by the objects that they come from: bsdf and medium inside. No bsdf is the default.
+    pub(super) material_ids: HashMap<(Option<usize>, Option<usize>), MaterialId>,
+    /// The bsdfs among them.
+    pub(super) used_bsdfs: HashSet<usize>,
     pub(super) groups: HashMap<usize, Arc<[Placed]>>,
 }
 
@@ -52,6 +54,7 @@ impl<'d> Importer<'d> {
             without_area: 0,
             primitives: HashMap::new(),
             material_ids: HashMap::new(),
+            used_bsdfs: HashSet::new(),
             groups: HashMap::new(),
         }
     }
@@ -137,7 +140,7 @@ impl<'d> Importer<'d> {
         for &index in &document.roots {
             let object = &document.objects[index];
             match object.tag {
-                Tag::Bsdf if !self.material_ids.contains_key(&Some(index)) => drop(self.bsdf(object, 0)?),
+                Tag::Bsdf if !self.used_bsdfs.contains(&index) => drop(self.bsdf(object, 0)?),
                 Tag::Texture | Tag::Spectrum => drop(self.texture_object(object)?),
                 _ => {}
             }

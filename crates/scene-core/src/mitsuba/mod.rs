@@ -11,6 +11,7 @@
 //! | `shape` | `obj`, `ply`, `serialized`, `rectangle`, `cube`, `sphere`, `disk`, `cylinder` (tessellated), `shapegroup`, `instance` |
 //! | `bsdf` | `diffuse`, `dielectric`, `thindielectric`, `roughdielectric`, `conductor`, `roughconductor`, `plastic`, `roughplastic`, `phong` (of Mitsuba 0.6), `mask`, `null`, `twosided`, `bumpmap`, `normalmap` |
 //! | `texture`, `spectrum` | `bitmap`, `checkerboard`, `uniform`, `srgb`, `d65` |
+//! | `medium`, `phase` | `homogeneous`, as the interior of a shape whose bsdf is `dielectric`, `roughdielectric` or `null`; `hg`, `isotropic` |
 //! | `emitter` | `area`, `point`, `spot`, `directional`, `constant`, `envmap` |
 //! | `sensor` | `perspective`, `thinlens` |
 //! | `film`, `rfilter` | `hdrfilm`; `box`, `tent`, `gaussian` |
@@ -26,7 +27,8 @@
 //!
 //! # Differences from Mitsuba
 //! - Spectra given by wavelength become RGB with the CIE 1931 observer at steps of 10 nm, within 2 % of Mitsuba's `scalar_rgb`.
-//! - Participating media are passed over with a warning, as Mitsuba's `path` does silently.
+//! - Participating media other than those in the table (in the air, inside other materials, of varying density) are passed over with a
+//!   warning, as Mitsuba's `path` does silently. Shadow rays do not cross a `null` boundary: see [`medium`](crate::medium).
 //! - Not supported, each an error: textured radiance of area and spot lights, textured roughness, spheres
 //!   scaled unequally along their axes, crop windows, `principal_point_offset`.
 //! - Accepted although Mitsuba 3 refuses them: unknown parameters, `<srgb>`, `#rrggbb` colours, polygons and negative
@@ -37,6 +39,7 @@ mod document;
 mod emitters;
 mod error;
 mod importer;
+mod media;
 mod names;
 mod obj;
 mod object;

@@ -79,7 +79,6 @@ impl Importer<'_> {
 
     /// A shape; nothing if no triangle of it is usable.
     fn shape(&mut self, object: &Object) -> Result<Option<Placed>> {
-        let document = self.document;
         let mut to_world = to_world(object)?;
         let flip_normals = object.boolean("flip_normals")?.unwrap_or(false);
         let shape = match object.plugin.as_str() {
@@ -96,10 +95,6 @@ impl Importer<'_> {
             }
             _ => return Err(Self::unknown(object)),
         };
-        for (child, medium) in document.children(object, &[Tag::Medium]) {
-            let plugin = &document.objects[medium].plugin;
-            self.warn_at(&child.place, format!("ignored: the {} medium `{plugin}`", child.name));
-        }
         object.ignore(&["silhouette_sampling_weight"]);
         let material = self.shape_material(object)?;
         let radiance = self.area_light(object)?;

@@ -105,6 +105,7 @@ pub struct ReferenceScene {
     bounding_sphere: (Vec3A, f32),
     triangles: u64,
     sharpness: Sharpness,
+    has_media: bool,
     warnings: Vec<String>,
 }
 
@@ -141,6 +142,7 @@ impl ReferenceScene {
         }
         let sharpness = surfaces.iter().map(|surface| materials[surface.material as usize].sharpness());
         let sharpness = sharpness.max().unwrap_or(Sharpness::Diffuse);
+        let has_media = surfaces.iter().any(|surface| materials[surface.material as usize].interior().is_some());
         Ok(Self {
             name: description.name,
             world,
@@ -152,6 +154,7 @@ impl ReferenceScene {
             bounding_sphere,
             triangles,
             sharpness,
+            has_media,
             warnings,
         })
     }
@@ -164,6 +167,12 @@ impl ReferenceScene {
     /// Number of triangles, counting those of instances each time they are placed.
     pub fn triangle_count(&self) -> u64 {
         self.triangles
+    }
+
+    /// Whether any surface encloses a participating medium. Estimators that do not ask [`Vertex::medium`](crate::Vertex::medium) take
+    /// it for clear.
+    pub fn has_media(&self) -> bool {
+        self.has_media
     }
 
     /// What was noticed and passed over, one line each.

@@ -5,6 +5,7 @@ use glam::Vec3A;
 use super::geometry::LocalGeometry;
 use crate::frame::Frame;
 use crate::material::{Bsdf, CompiledMaterial, ShadingInput};
+use crate::medium::Medium;
 use crate::ray::SurfacePoint;
 use crate::traits::{EmitterId, Rgb, ScatterSample, TransportMode, Vertex};
 
@@ -145,6 +146,15 @@ impl Vertex for SceneVertex<'_> {
     #[inline]
     fn reversed(&self, wi: Vec3A) -> Self {
         Self { wo: wi, wo_local: self.frame.to_local(wi), ..*self }
+    }
+
+    #[inline]
+    fn medium(&self, wi: Vec3A, current: Option<Medium<Rgb>>) -> Option<Medium<Rgb>> {
+        match self.bsdf.interior() {
+            None => current,
+            // The side on which the ray really leaves, as in `spawn_ray`.
+            Some(interior) => (wi.dot(self.point.normal) < 0.0).then_some(*interior),
+        }
     }
 
     #[inline]

@@ -12,6 +12,7 @@ use glam::Vec3A;
 /// - `*` is the pointwise product: commutative, with `splat(1.0)` as one.
 /// - `luminance` is linear and non-negative on non-negative spectra;
 ///   `is_black` holds exactly if every component is zero.
+/// - Both operations act on each component alone: `(a * b).component(i)` is `a.component(i) * b.component(i)`.
 ///
 /// Scalar renderers implement it for one number, spectral ones for a bundle of wavelengths.
 pub trait Spectrum:
@@ -45,6 +46,20 @@ pub trait Spectrum:
     /// Whether every component is zero.
     fn is_black(&self) -> bool {
         *self == Self::ZERO
+    }
+
+    /// How many components it has. Participating media attenuate each of them at its own rate, and so ask for them one by one.
+    /// The default is right for RGB; spectra of other components override it, with the next two.
+    const COMPONENTS: usize = 3;
+    /// Component number `index`, below [`COMPONENTS`](Self::COMPONENTS).
+    #[inline]
+    fn component(&self, index: usize) -> f32 {
+        self.to_rgb()[index]
+    }
+    /// The spectrum whose component number `i` is `component(i)`.
+    #[inline]
+    fn from_components(component: impl FnMut(usize) -> f32) -> Self {
+        Self::from_rgb(core::array::from_fn(component))
     }
 }
 
@@ -210,6 +225,10 @@ impl Spectrum for Rgb {
         self.0.to_array()
     }
     #[inline]
+    fn component(&self, index: usize) -> f32 {
+        self.0[index]
+    }
+    #[inline]
     fn from_rgb(rgb: [f32; 3]) -> Self {
         rgb.into()
     }
@@ -240,5 +259,14 @@ impl Spectrum for f32 {
     #[inline]
     fn from_rgb(rgb: [f32; 3]) -> Self {
         Rgb::from(rgb).luminance()
+    }
+    const COMPONENTS: usize = 1;
+    #[inline]
+    fn component(&self, _: usize) -> f32 {
+        *self
+    }
+    #[inline]
+    fn from_components(mut component: impl FnMut(usize) -> f32) -> Self {
+        component(0)
     }
 }

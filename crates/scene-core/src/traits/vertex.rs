@@ -3,6 +3,7 @@
 use glam::Vec3A;
 
 use super::{EmitterId, Spectrum};
+use crate::medium::Medium;
 use crate::ray::{Ray, SurfacePoint};
 
 /// Which quantity a walk transports, in the direction in which it runs.
@@ -94,6 +95,17 @@ pub trait Vertex: Clone {
     #[inline]
     fn lambertian(&self) -> Option<Self::Spectrum> {
         None
+    }
+
+    /// The medium that the ray which leaves in direction `wi` runs through, if that which arrived from `wo` ran through `current`. The boundary of a
+    /// medium knows what is on either side of it; any other surface changes nothing, which is the default.
+    ///
+    /// An estimator that knows media keeps this beside its ray and lets [`Medium::walk`] take the place of
+    /// [`Scene::intersect`](super::Scene::intersect). Others see through media as through clear glass.
+    #[inline]
+    fn medium(&self, wi: Vec3A, current: Option<Medium<Self::Spectrum>>) -> Option<Medium<Self::Spectrum>> {
+        let _ = wi;
+        current
     }
 
     /// [`eval`](Self::eval) and [`pdf_solid_angle`](Self::pdf_solid_angle) at once.
