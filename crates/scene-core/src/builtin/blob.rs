@@ -100,7 +100,15 @@ fn finish(d: Vec3A) -> usize {
     if bands < -0.28 { 0 } else { 1 + usize::from(bands < 0.30) }
 }
 
-fn place_blob(b: &mut SceneBuilder, finishes: [MaterialId; 3]) {
+/// The blob as it stands on the ground: its vertices, with the directions that they were blown up along.
+struct Blob {
+    directions: Vec<Vec3A>,
+    positions: Vec<Vec3A>,
+    normals: Vec<Vec3A>,
+    triangles: Vec<[u32; 3]>,
+}
+
+fn make_blob() -> Blob {
     let (directions, triangles) = sphere(DIVISIONS);
     let mut positions: Vec<Vec3A> = directions.iter().map(|&d| surface(d)).collect();
     // It has sunk into the ground by a hundredth of its size.
@@ -116,6 +124,17 @@ fn place_blob(b: &mut SceneBuilder, finishes: [MaterialId; 3]) {
             normals[i as usize] += (q - p).cross(r - p);
         }
     }
+    Blob { directions, positions, normals, triangles }
+}
+
+/// The whole blob as one closed mesh. Its lowest part is below the ground at y = 0.
+pub(super) fn whole_blob() -> TriangleMesh {
+    let Blob { positions, normals, triangles, .. } = make_blob();
+    part_mesh(&positions, &normals, triangles.iter())
+}
+
+fn place_blob(b: &mut SceneBuilder, finishes: [MaterialId; 3]) {
+    let Blob { directions, positions, normals, triangles } = make_blob();
     for (index, &material) in finishes.iter().enumerate() {
         let part = |triangle: &&[u32; 3]| finish(directions[triangle[0] as usize]) == index;
         let mesh = part_mesh(&positions, &normals, triangles.iter().filter(part));

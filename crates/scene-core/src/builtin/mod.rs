@@ -5,7 +5,9 @@ mod caustics;
 mod conference;
 mod cornell_box;
 mod door_slit;
+mod fence;
 mod finish;
+mod foliage;
 mod form;
 mod furnace;
 mod furniture;
@@ -19,6 +21,7 @@ mod shapes;
 mod sky;
 mod solids;
 mod sphere_row;
+mod translucent;
 mod variety;
 
 use crate::reference::SceneDescription;
@@ -28,6 +31,8 @@ pub use caustics::{caustic_room, glass_ball};
 pub use conference::conference;
 pub use cornell_box::cornell_box;
 pub use door_slit::door_slit;
+pub use fence::fence;
+pub use foliage::foliage;
 pub use furnace::{furnace, furnace_box};
 pub use interior::interior;
 pub use lantern_field::lantern_field;
@@ -37,6 +42,7 @@ pub use rooms::rooms;
 pub use shapes::SceneBuilder;
 pub use sky::sky_image;
 pub use sphere_row::sphere_row;
+pub use translucent::translucent_blob;
 
 /// A builtin scene.
 #[derive(Clone, Copy, Debug)]
@@ -114,6 +120,21 @@ impl Builtin {
             make: lantern_field,
         },
         Self { name: "glass-ball", about: "caustics of a glass ball and a golden ring on a floor", make: glass_ball },
+        Self {
+            name: "fence",
+            about: "a chain-link fence with wires thinner than a pixel, before a chequered yard in the sun",
+            make: fence,
+        },
+        Self {
+            name: "foliage",
+            about: "a shrub of 3240 leaves in the corner of two walls, under an area light",
+            make: foliage,
+        },
+        Self {
+            name: "translucent-blob",
+            about: "the blob of a milky material, lit from behind (participating medium)",
+            make: translucent_blob,
+        },
     ];
 
     /// The builtin scene of this name.
