@@ -5,6 +5,7 @@ mod bidirectional;
 mod connections;
 mod direct;
 mod light;
+mod media;
 mod path;
 mod photon_lights;
 mod photons;

@@ -5,6 +5,7 @@ use scene_core::{Ray, RussianRoulette, Scene, Spectrum, SurfacePoint, Vertex};
 use vpl_gi::{Found, Observer};
 
 use super::direct::{DirectLight, Scattered};
+use super::media::follow;
 use super::scattering::{OwnSampling, ScatterSampling};
 use super::{CameraEstimator, FirstHit};
 
@@ -28,6 +29,9 @@ pub enum FirstEvent {
 /// with the path throughput `beta`, densities `p_l`, `p_s` by solid angle of light and scattering samples, the
 /// probability of surviving Russian roulette `q`, and shares `w_l + w_s = 1`. Light without area (Dirac deltas) has
 /// `w_l = 1`; after specular scattering `w_s = 1`.
+///
+/// Where the path runs through a participating medium, a walk from surface to surface takes the place of a segment, however often it scatters; light is
+/// found there by leaving.
 ///
 /// Unbiased up to `max_depth`. Cost: one closest hit per vertex, and what the search for emitters takes.
 ///
@@ -60,11 +64,17 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
         let mut eta = 1.0;
         let mut first_hit = None;
         let mut last: Option<(SurfacePoint, f32)> = None;
+        let mut medium = None;
         for length in 1..=self.max_depth {
+            let Some(found) = follow(scene, medium.as_ref(), ray, throughput, length, sampler) else { break };
+            let vertex = found.vertex;
+            if found.scatterings > 0 {
+                last = None;
+            }
+            (ray, throughput) = (found.ray, found.throughput);
             let from = last.as_ref().map(|(point, pdf)| Scattered { point, pdf_solid_angle: *pdf });
 
             // Light found by scattering (or seen directly).
-            let vertex = scene.intersect(&ray);
             let emission = self.direct.emission(scene, &ray, vertex.as_ref(), from, throughput);
             if let Some(vertex) = &vertex {
                 observer.vertex(length, vertex, throughput);
@@ -108,6 +118,7 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
             observer.scattered(length, &vertex, &sample);
             last = (!sample.is_specular).then(|| (*vertex.point(), sample.pdf_solid_angle));
             ray = vertex.spawn_ray(sample.wi);
+            medium = vertex.medium(sample.wi, medium);
         }
         (radiance, first_hit)
     }

@@ -30,7 +30,7 @@ use crate::samplers::{AnyFamily, SamplerName};
 /// The estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum EstimatorName {
-    /// Path tracing: next event estimation and scattering, combined by the heuristic.
+    /// Path tracing: next event estimation and scattering, combined by the heuristic. With `direct` the only one that knows participating media.
     #[default]
     Path,
     /// Light tracing; what it cannot find (specular next to the sensor) by path tracing.
@@ -57,6 +57,11 @@ impl EstimatorName {
     /// Whether it makes use of the settings of light paths.
     pub fn connects_light_paths(self) -> bool {
         matches!(self, Self::RobustIgi | Self::InstantRadiosity | Self::Bdpt)
+    }
+
+    /// Whether it follows light through participating media; the others take them for clear.
+    pub fn knows_media(self) -> bool {
+        matches!(self, Self::Path | Self::Direct)
     }
 }
 
@@ -418,6 +423,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     }
     if scene.emitters().is_empty() && arguments.estimator != EstimatorName::Ao {
         return Err(format!("{}: the scene has no light, so every pixel would be black", arguments.scene).into());
+    }
+    if scene.has_media() && !arguments.estimator.knows_media() {
+        report("warning: this estimator takes participating media for clear; path and direct know them");
     }
     let load_seconds = start.elapsed().as_secs_f64();
 
