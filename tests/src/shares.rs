@@ -6,7 +6,7 @@ use estimator_checks::assert_shares;
 ///
 /// Each package writes its share beside its tests; this table repeats them, so that their sum is checked when it is
 /// compiled. A test compares it with the sources.
-pub const SHARES: [(&str, f64); 21] = [
+pub const SHARES: [(&str, f64); 23] = [
     ("lichtwerk foreign scene", 1e-8),
     ("mis-heuristics", 1e-8),
     ("path-space-filter", 2e-8),
@@ -24,6 +24,7 @@ pub const SHARES: [(&str, f64); 21] = [
     ("vpl-gi caustics", 1e-9),
     ("workspace bidirectional", 5e-9),
     ("workspace estimators", 2.5e-7),
+    ("workspace filters", 2e-8),
     ("workspace photon lights", 2e-8),
     ("workspace photon maps", 2e-8),
     ("workspace resampling", 5e-8),

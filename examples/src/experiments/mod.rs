@@ -10,6 +10,7 @@
 //! - [`Trials`]: renderings of one setting with several seeds, against a reference; [`ratio_of_means`] compares two.
 
 mod context;
+mod filtering;
 mod many_lights;
 mod photons;
 mod report;
@@ -98,6 +99,31 @@ pub const EXPERIMENTS: &[Experiment] = &[
         name: "door-slit",
         about: "figure 4 of that paper: a room that is lit by a slit, with photons where importance is",
         measure: photons::slit,
+    },
+    Experiment {
+        name: "psf-progressive",
+        about: "figure 3 of Keller, Dahm and Binder 2014: the error of path space filtering by the number of samples",
+        measure: filtering::progressive,
+    },
+    Experiment {
+        name: "psf-weights",
+        about: "figure 4 of that paper: what each similarity weight gains",
+        measure: filtering::weights,
+    },
+    Experiment {
+        name: "psf-iterated",
+        about: "figure 2 of that paper: averages of averages, noise against detail",
+        measure: filtering::iterated,
+    },
+    Experiment {
+        name: "psf-applications",
+        about: "figure 6 of that paper: occlusion, shadows, indirect light, leaves, translucency, several cameras",
+        measure: filtering::applications,
+    },
+    Experiment {
+        name: "psf-antialias",
+        about: "figure 7 of that paper: a fence with one light path per pixel and three more camera samples",
+        measure: filtering::antialias,
     },
 ];
 

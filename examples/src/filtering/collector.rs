@@ -35,6 +35,8 @@ pub struct Collector {
     unfiltered: [f32; 3],
     /// How many more may be selected.
     left: u32,
+    /// Throughput up to the last vertex.
+    throughput: [f32; 3],
     last: Vec3A,
     distance: f32,
 }
@@ -49,6 +51,7 @@ impl Collector {
             before: None,
             unfiltered: [0.0; 3],
             left: selection.vertices(),
+            throughput: [1.0; 3],
             last: ray.origin,
             distance: 0.0,
         }
@@ -64,6 +67,25 @@ impl Collector {
             collected
         };
         (self.unfiltered.map(|u| u * factor), self.vertices.into_iter().map(collected))
+    }
+
+    /// Makes a vertex of the path the one to which contributions belong.
+    fn select<X: Vertex>(&mut self, length: u32, vertex: &X) {
+        self.left -= 1;
+        let (wo, normal) = (vertex.wo(), vertex.shading_normal());
+        let vertex = FilterVertex {
+            position: vertex.point().position.to_array(),
+            // On the side that is seen: both sides of a leaf are two surfaces.
+            normal: (normal * 1.0_f32.copysign(normal.dot(wo))).to_array(),
+            albedo: vertex.albedo().to_rgb(),
+            view_direction: wo.to_array(),
+            path_length: self.distance,
+            hit_distance: f32::INFINITY,
+            ..FilterVertex::default()
+        };
+        self.before = self.current;
+        self.current = Some(self.vertices.len());
+        self.vertices.push((length, Collected { vertex, attenuation: self.throughput }));
     }
 
     /// Where a contribution belongs that was found at the end of so many segments.
@@ -96,24 +118,10 @@ impl<X: Vertex> Observer<X> for Collector {
         {
             collected.vertex.hit_distance = step;
         }
-        if self.left == 0 || !self.selection.selects(vertex) {
-            return;
+        self.throughput = throughput.to_rgb();
+        if self.left > 0 && self.selection.selects(vertex) {
+            self.select(length, vertex);
         }
-        self.left -= 1;
-        let (wo, normal) = (vertex.wo(), vertex.shading_normal());
-        let vertex = FilterVertex {
-            position: position.to_array(),
-            // On the side that is seen: both sides of a leaf are two surfaces.
-            normal: (normal * 1.0_f32.copysign(normal.dot(wo))).to_array(),
-            albedo: vertex.albedo().to_rgb(),
-            view_direction: wo.to_array(),
-            path_length: self.distance,
-            hit_distance: f32::INFINITY,
-            ..FilterVertex::default()
-        };
-        self.before = self.current;
-        self.current = Some(self.vertices.len());
-        self.vertices.push((length, Collected { vertex, attenuation: throughput.to_rgb() }));
     }
 
     fn scattered(&mut self, length: u32, vertex: &X, sample: &ScatterSample<X::Spectrum>) {
@@ -121,6 +129,10 @@ impl<X: Vertex> Observer<X> for Collector {
         {
             self.current = None;
             self.left += 1;
+        }
+        // What comes out of a medium varies slowly along its boundary, however smooth that is.
+        if self.current.is_none() && self.left > 0 && vertex.medium(sample.wi, None).is_some() {
+            self.select(length, vertex);
         }
     }
 

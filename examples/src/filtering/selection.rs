@@ -24,7 +24,8 @@ pub enum SelectionError {
 /// this is `alpha`, seen along the normal; on a diffuse surface it is 1/2 everywhere; see [`Sharpness`](crate::estimators::Sharpness), which asks the same of photons.
 ///
 /// A vertex is sufficiently diffuse if the mirror direction is not sharper than the threshold. Where a path leaves such a vertex by a Dirac delta or in a direction that
-/// is sharper (the coat of plastic), what it finds there is not the vertex's, and the next vertex may be selected in its place.
+/// is sharper (the coat of plastic), what it finds there is not the vertex's, and the next vertex may be selected in its place. Where a path enters a participating medium
+/// the boundary is selected, however smooth: what comes out of the medium varies slowly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
     min_roughness: f32,

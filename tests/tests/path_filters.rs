@@ -1,0 +1,190 @@
+//! Path space filtering of whole renderings.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::ops::ControlFlow;
+
+use estimator_checks::{Suite, slope_at_most};
+use lichtwerk::filters::{FilterSettings, PathFilterName};
+use lichtwerk::metrics::{ImagePair, relative_mse};
+use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName, estimate};
+use lichtwerk::render::Budget;
+use lichtwerk_tests::scenes::resized;
+use scene_core::film::LayeredImage;
+use scene_core::{ReferenceScene, SceneDescription, builtin};
+
+static SUITE: Suite = Suite::with_share("workspace filters", 12, 2e-8);
+
+fn scene(description: SceneDescription, [width, height]: [u32; 2]) -> ReferenceScene {
+    ReferenceScene::new(resized(description, width, height)).unwrap()
+}
+
+fn render(scene: &ReferenceScene, settings: &RenderSettings) -> LayeredImage {
+    let rendering = estimate(scene, settings, |_| ControlFlow::Continue(())).unwrap();
+    rendering.film.develop(rendering.light_paths)
+}
+
+fn filtered(settings: &RenderSettings, name: PathFilterName, filtering: FilterSettings) -> RenderSettings {
+    RenderSettings { path_filter: Some(name), filtering, ..settings.clone() }
+}
+
+/// Whether two images agree up to the round-off of sums that run in another order.
+fn assert_same(a: &LayeredImage, b: &LayeredImage, what: &str) {
+    let (a, b) = (a.rgb().unwrap(), b.rgb().unwrap());
+    for (i, (a, b)) in a.iter().zip(&b).enumerate() {
+        for k in 0..3 {
+            assert!((a[k] - b[k]).abs() <= 2e-4 * (a[k].abs() + 1e-2), "{what}, pixel {i}: {a:?} and {b:?}");
+        }
+    }
+}
+
+/// Paths that are taken apart and put together again are the paths: with nobody in the ball but the centre, filtered images are the unfiltered ones.
+#[test]
+fn without_a_radius_every_estimator_renders_its_own_image() {
+    use EstimatorName::{Ao, Direct, InstantRadiosity, Path, PhotonMap, RobustIgi};
+    let scenes = [builtin::cornell_box(), builtin::glass_ball(), builtin::interior(), builtin::translucent_blob()];
+    for (number, description) in scenes.into_iter().enumerate() {
+        let scene = scene(description, [24, 18]);
+        for estimator in [Path, Direct, Ao, RobustIgi, InstantRadiosity, PhotonMap] {
+            for vertices in [1, 3] {
+                let mut settings =
+                    RenderSettings { estimator, threads: 2, max_depth: 6, ..RenderSettings::new(Budget::Samples(4)) };
+                settings.photons.photons = 2000;
+                let nothing = FilterSettings {
+                    filter_length: Some(0.0),
+                    filter_vertices: vertices,
+                    filter_batch: Some(2),
+                    ..FilterSettings::default()
+                };
+                let plain = render(&scene, &settings);
+                for name in [PathFilterName::Psf, PathFilterName::PsfHash] {
+                    let found = render(&scene, &filtered(&settings, name, nothing.clone()));
+                    assert_same(&found, &plain, &format!("scene {number}, {estimator:?}, {vertices} vertices"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_and_passes_change_nothing() {
+    let scene = scene(builtin::cornell_box(), [32, 24]);
+    for name in [PathFilterName::Psf, PathFilterName::PsfHash] {
+        let run = |threads| {
+            let filtering = FilterSettings { filter_batch: Some(4), filter_extra: 1, ..FilterSettings::default() };
+            let settings = RenderSettings { threads, ..RenderSettings::new(Budget::Samples(10)) };
+            render(&scene, &filtered(&settings, name, filtering)).rgb().unwrap()
+        };
+        assert_eq!(run(1), run(3));
+    }
+}
+
+/// Two halves that were rendered one after the other are the whole.
+#[test]
+fn a_rendering_goes_on_where_another_one_stopped() {
+    let scene = scene(builtin::cornell_box(), [32, 24]);
+    let settings = |samples, done| {
+        let settings =
+            RenderSettings { done, sampler: SamplerName::GlobalSobol, ..RenderSettings::new(Budget::Samples(samples)) };
+        let filtering = FilterSettings { filter_batch: Some(4), ..FilterSettings::default() };
+        filtered(&settings, PathFilterName::Psf, filtering)
+    };
+    let parts = [render(&scene, &settings(8, 0)), render(&scene, &settings(8, 8))].map(|image| image.rgb().unwrap());
+    let whole = render(&scene, &settings(16, 0)).rgb().unwrap();
+    for (i, whole) in whole.iter().enumerate() {
+        for k in 0..3 {
+            let mean = 0.5 * (parts[0][i][k] + parts[1][i][k]);
+            assert!((mean - whole[k]).abs() <= 1e-5 * (1.0 + whole[k]));
+        }
+    }
+    // Not in the middle of a batch.
+    let error = estimate(&scene, &settings(8, 6), |_| ControlFlow::Continue(())).unwrap_err();
+    assert!(error.to_string().contains("6 samples"), "{error}");
+}
+
+#[test]
+fn estimators_that_tell_nobody_what_they_find_are_refused() {
+    let scene = scene(builtin::cornell_box(), [4, 4]);
+    for estimator in [EstimatorName::Bdpt, EstimatorName::Light, EstimatorName::Sppm, EstimatorName::RestirDirect] {
+        let settings = RenderSettings { estimator, ..RenderSettings::new(Budget::Samples(1)) };
+        let settings = filtered(&settings, PathFilterName::Psf, FilterSettings::default());
+        let error = estimate(&scene, &settings, |_| ControlFlow::Continue(())).unwrap_err();
+        assert!(error.to_string().contains("photon-map"), "{error}");
+    }
+}
+
+/// Numbers of samples per pixel, one per batch.
+const SAMPLES: [u64; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
+
+/// Errors by number of batches; no two points share samples.
+fn errors(
+    scene: &ReferenceScene,
+    seed: u64,
+    truth: &LayeredImage,
+    name: PathFilterName,
+    filtering: &FilterSettings,
+) -> Vec<(f64, f64)> {
+    let filtering = FilterSettings { filter_batch: Some(1), ..filtering.clone() };
+    let error = |samples: u64| {
+        let runs = 4.max(24 / samples);
+        let one = |run: u64| {
+            let seed = seed.wrapping_add(samples << 32 | run);
+            let settings = RenderSettings { seed, threads: 2, ..RenderSettings::new(Budget::Samples(samples)) };
+            let image = render(scene, &filtered(&settings, name, filtering.clone()));
+            relative_mse(&ImagePair::of_images(&image, truth).unwrap())
+        };
+        (0..runs).map(one).sum::<f64>() / runs as f64
+    };
+    SAMPLES.map(|samples| (samples as f64, error(samples))).to_vec()
+}
+
+fn truth(scene: &ReferenceScene, samples: u64) -> LayeredImage {
+    render(scene, &RenderSettings { seed: 77, threads: 2, ..RenderSettings::new(Budget::Samples(samples)) })
+}
+
+/// Weights of which each is consistent: what is averaged, and how far in pixels.
+fn weights() -> [(&'static str, PathFilterName, FilterSettings); 6] {
+    let usual = || FilterSettings { filter_radius: 6.0, ..FilterSettings::default() };
+    let all = || FilterSettings { filter_normals: -1.0, filter_as_stored: true, ..usual() };
+    [
+        ("everything", PathFilterName::Psf, all()),
+        ("normals", PathFilterName::Psf, FilterSettings { filter_normals: 0.95, ..all() }),
+        ("albedo", PathFilterName::Psf, FilterSettings { filter_albedo: Some(0.05), ..all() }),
+        ("view", PathFilterName::Psf, FilterSettings { filter_view: Some(0.99), ..usual() }),
+        ("two iterations", PathFilterName::Psf, FilterSettings { filter_iterations: 2, ..usual() }),
+        ("hash", PathFilterName::PsfHash, usual()),
+    ]
+}
+
+#[test]
+fn errors_fall_with_every_batch_for_every_weight() {
+    let scene = scene(builtin::cornell_box(), [24, 24]);
+    let truth = truth(&scene, 8192);
+    for (name, filter, filtering) in weights() {
+        let check = SUITE.check(&format!("cornell box, {name}"));
+        let points = errors(&scene, check.seed(), &truth, filter, &filtering);
+        println!("{}", slope_at_most(check, &points, -0.3).expect_pass());
+    }
+    for (name, filter, filtering) in weights() {
+        if name == "everything" || name == "hash" {
+            // The planted bug: a radius that is held.
+            let held = FilterSettings { filter_exponent: 1e-6, filter_radius: 12.0, ..filtering };
+            let check = SUITE.twin(&format!("held, {name}"));
+            let points = errors(&scene, check.seed(), &truth, filter, &held);
+            println!("{}", slope_at_most(check, &points, -0.3).expect_reject());
+        }
+    }
+}
+
+#[test]
+fn errors_fall_in_the_interior_and_on_glossy_surfaces() {
+    let usual = || FilterSettings { filter_radius: 6.0, ..FilterSettings::default() };
+    for (name, description) in [("interior", builtin::interior()), ("glossy", builtin::conference())] {
+        let scene = scene(description, [24, 18]);
+        let truth = truth(&scene, 4096);
+        for filter in [PathFilterName::Psf, PathFilterName::PsfHash] {
+            let check = SUITE.check(&format!("{name}, {filter:?}"));
+            let points = errors(&scene, check.seed(), &truth, filter, &usual());
+            println!("{}", slope_at_most(check, &points, -0.3).expect_pass());
+        }
+    }
+}
