@@ -145,6 +145,9 @@ pub struct RenderArguments {
     /// Path space filtering.
     #[command(flatten)]
     pub filtering: FilterSettings,
+    /// Go on where this path space filtered image stopped, and write the mean of both.
+    #[arg(long = "continue", value_name = "IMAGE.exr", requires = "filter", help_heading = "Path space filter")]
+    pub continued: Option<PathBuf>,
 }
 
 /// Arguments of `diff`.

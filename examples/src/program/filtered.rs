@@ -1,11 +1,16 @@
 //! `lichtwerk render --filter psf`: estimators whose paths are filtered.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 
-use scene_core::{RussianRoulette, Scene, Sensor};
+use clap::ValueEnum;
+use scene_core::film::{Attribute, LayeredImage, SAMPLES_PER_PIXEL};
+
+use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
 use vpl_gi::{LightTracing, Residual, RobustIgi};
 
 use super::render::{EstimatorName, RenderSettings, light_photons};
+use super::{Failure, RenderArguments};
 use crate::choices::AnyChoice;
 use crate::estimators::{AmbientOcclusion, FirstEvent, NoLightPaths, PathTracer, VirtualLights};
 use crate::filtering::{Filtered, Observable, Tracing};
@@ -68,6 +73,35 @@ pub(super) fn estimate<S: Scene + Sync>(
         }
         _ => Err(FilterError::Estimator.into()),
     }
+}
+
+/// An image that is to be continued, and how many samples per pixel it has.
+pub(super) fn earlier(
+    path: &Path,
+    scene: &ReferenceScene,
+    arguments: &RenderArguments,
+) -> Result<(u64, LayeredImage), Failure> {
+    let image = LayeredImage::read_exr(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let refuse = |what: String| Failure::from(format!("{} cannot be continued: {what}", path.display()));
+    let [width, height] = scene.sensor().resolution();
+    if [image.width(), image.height()] != [width, height] {
+        return Err(refuse(format!("it has {} x {} pixels, not {width} x {height}", image.width(), image.height())));
+    }
+    let name = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned()).unwrap_or_default();
+    let same = [
+        ("scene", scene.name().to_owned()),
+        ("estimator", name(arguments.estimator.to_possible_value())),
+        ("sampler", name(arguments.sampler.to_possible_value())),
+        ("seed", arguments.seed.to_string()),
+    ];
+    for (key, now) in same {
+        let then = image.attribute(key).map(ToString::to_string).unwrap_or_default();
+        if then != now {
+            return Err(refuse(format!("its {key} is '{then}', not '{now}'")));
+        }
+    }
+    let done = image.attribute(SAMPLES_PER_PIXEL).and_then(Attribute::as_u64);
+    Ok((done.ok_or_else(|| refuse("it does not tell its samples per pixel".to_owned()))?, image))
 }
 
 /// What all estimators have in common.

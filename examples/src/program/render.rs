@@ -439,6 +439,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         check_writable(path)?;
     }
 
+    // What was rendered before.
+    let earlier = arguments.continued.as_deref().map(|path| filtered::earlier(path, &scene, arguments)).transpose()?;
+
     // Render.
     let settings = RenderSettings {
         estimator: arguments.estimator,
@@ -453,7 +456,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         filter,
         path_filter,
         filtering: arguments.filtering.clone(),
-        done: 0,
+        done: earlier.as_ref().map_or(0, |(done, _)| *done),
         light_paths: arguments.light_paths.clone(),
         resampling: arguments.resampling.clone(),
         light_photons: arguments.light_photons.clone(),
@@ -466,7 +469,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         );
     }
     let mut watch = Watch::new(arguments, &settings, &name);
-    let (image, rendering) = render_to_image(&scene, &settings, |pass| watch.observe(pass))?;
+    let (mut image, rendering) = render_to_image(&scene, &settings, |pass| watch.observe(pass))?;
+    if let Some((_, earlier)) = earlier {
+        image = LayeredImage::merge(&[earlier, image])?;
+    }
     watch.finish(&image, &rendering);
 
     // Write.
