@@ -100,7 +100,7 @@ pub struct FilterSettings {
     #[arg(long)]
     pub filter_visibility: bool,
     /// Least roughness of the surfaces at which paths are averaged: 0.5 is diffuse.
-    #[arg(long, value_name = "ROUGHNESS", default_value_t = 0.2)]
+    #[arg(long, value_name = "ROUGHNESS", default_value_t = 0.05)]
     pub filter_roughness: f32,
     /// Vertices of a path that are averaged, at most.
     #[arg(long, value_name = "COUNT", default_value_t = 1)]
@@ -131,7 +131,7 @@ impl Default for FilterSettings {
             filter_view: None,
             filter_hit_distance: None,
             filter_visibility: false,
-            filter_roughness: 0.2,
+            filter_roughness: 0.05,
             filter_vertices: 1,
             filter_extra: 0,
             filter_search: SearchName::Grid,

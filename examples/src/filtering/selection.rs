@@ -78,8 +78,8 @@ impl Selection {
 }
 
 impl Default for Selection {
-    /// The first vertex of at least roughness 0.2.
+    /// The first vertex of at least roughness 0.05.
     fn default() -> Self {
-        Self { min_roughness: 0.2, vertices: 1 }
+        Self { min_roughness: 0.05, vertices: 1 }
     }
 }
