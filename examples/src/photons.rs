@@ -4,14 +4,14 @@ use std::sync::OnceLock;
 
 use clap::{Args, ValueEnum};
 use photon_map::{
-    Bound, BoundError, CausticRule, CausticRuleError, DensityEstimation, Gather, GatherError, Kernel, MapPartition,
-    PartitionError, ProgressiveError, ProgressiveRadius,
+    Bound, BoundError, CausticRule, CausticRuleError, DensityEstimation, Gather, GatherError, GuidanceError, Guide,
+    Kernel, MapPartition, PartitionError, ProgressiveError, ProgressiveRadius,
 };
 use scene_core::{EmitterChoice, RussianRoulette, Scene};
 
 use crate::estimators::{
-    DirectLight, ImportonTracing, PhotonEye, PhotonMapping, PhotonTracing, ProgressivePhotons, Sharpness,
-    VirtualLights, WithCaustics,
+    DirectLight, GuidanceTracing, ImportonTracing, PhotonEye, PhotonMapping, PhotonTracing, ProgressivePhotons,
+    Sharpness, Unguided, VirtualLights, WithCaustics,
 };
 use crate::render::Shared;
 
@@ -23,6 +23,20 @@ pub enum DepositionName {
     All,
     /// Photons are kept where eye paths ask for them.
     Importance,
+}
+
+/// What importons guide of light paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum GuideName {
+    /// Nothing: emitters and materials sample by themselves.
+    #[default]
+    None,
+    /// The directions in which surfaces scatter light.
+    Scattering,
+    /// The emitters that paths begin at, and the directions in which they emit.
+    Emission,
+    /// Both.
+    Both,
 }
 
 /// The forms of [`MapPartition`].
@@ -117,7 +131,13 @@ pub struct PhotonSettings {
     /// Which photons are kept (photon-map).
     #[arg(long, value_enum, default_value_t)]
     pub deposition: DepositionName,
-    /// Paths from the sensor for --deposition importance.
+    /// What importons guide of light paths, whatever photons are kept (photon-map).
+    #[arg(long, value_enum, default_value_t)]
+    pub guide: GuideName,
+    /// The share of emitters and directions that --guide chooses: less than 1, so that all light is found.
+    #[arg(long, default_value_t = DEFAULT_GUIDE_SHARE, value_parser = parse_guide_share)]
+    pub guide_share: f64,
+    /// Paths from the sensor for --deposition importance and for --guide.
     #[arg(long, default_value_t = DEFAULT_IMPORTONS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
     pub importons: u64,
     /// Radius in which importons are looked for.
@@ -142,6 +162,7 @@ const DEFAULT_ROUGHNESS: f32 = 0.1;
 const DEFAULT_RAYS: u32 = 8;
 const DEFAULT_IMPORTONS: u64 = 100_000;
 const DEFAULT_FLOOR: f64 = 0.01;
+const DEFAULT_GUIDE_SHARE: f64 = 0.5;
 const DEFAULT_ALPHA: f64 = 2.0 / 3.0;
 /// Part of the queries of test paths where photons are not kept for certain.
 const QUANTILE: f64 = 0.05;
@@ -161,6 +182,8 @@ impl Default for PhotonSettings {
             caustic_roughness: DEFAULT_ROUGHNESS,
             gather_rays: DEFAULT_RAYS,
             deposition: DepositionName::All,
+            guide: GuideName::None,
+            guide_share: DEFAULT_GUIDE_SHARE,
             importons: DEFAULT_IMPORTONS,
             importon_radius: Radius::Relative(0.03),
             deposition_floor: DEFAULT_FLOOR,
@@ -187,6 +210,9 @@ pub enum PhotonError {
     /// The floor or cutoff of deposition.
     #[error(transparent)]
     Bound(#[from] BoundError),
+    /// The share that is guided.
+    #[error(transparent)]
+    Guide(#[from] GuidanceError),
     /// How the radius shrinks.
     #[error(transparent)]
     Progressive(#[from] ProgressiveError),
@@ -262,6 +288,21 @@ impl PhotonSettings {
         })
     }
 
+    /// Paths from the sensor that say where light paths go; nothing if none are to.
+    ///
+    /// # Errors
+    /// As for [`importon_tracing`](Self::importon_tracing), or if the share is out of range.
+    pub fn guidance<S: Scene>(&self, scene: &S, limits: PathLimits) -> Result<Option<GuidanceTracing>, PhotonError> {
+        let guide = Guide::new(self.guide_share)?;
+        let (scattering, emission) = match self.guide {
+            GuideName::None => return Ok(None),
+            GuideName::Scattering => (true, false),
+            GuideName::Emission => (false, true),
+            GuideName::Both => (true, true),
+        };
+        Ok(Some(GuidanceTracing { importons: self.importon_tracing(scene, limits)?, guide, scattering, emission }))
+    }
+
     /// Light paths.
     ///
     /// # Errors
@@ -273,6 +314,7 @@ impl PhotonSettings {
             max_length: limits.max_depth.saturating_sub(1),
             roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
             sharpness: self.sharpness()?,
+            guidance: Unguided,
         })
     }
 
@@ -302,6 +344,7 @@ impl PhotonSettings {
             paths: self.photons,
             partition: self.partition()?,
             importons,
+            guidance: self.guidance(scene, limits)?,
             global: self.estimation(scene, self.photon_radius)?,
             caustic: self.estimation(scene, self.caustic_radius)?,
             maps: OnceLock::new(),
@@ -368,6 +411,13 @@ fn parse_share(text: &str) -> Result<f64, String> {
     }
 }
 
+fn parse_guide_share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
+        _ => Err("expected a number from 0 to less than 1".to_owned()),
+    }
+}
+
 fn parse_roughness(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(roughness) if (0.0..=0.45).contains(&roughness) => Ok(roughness),
@@ -397,6 +447,8 @@ mod tests {
             assert!(parse_share(wrong).is_err() && parse_alpha(wrong).is_err(), "{wrong}");
         }
         assert!(parse_alpha("1").is_err() && parse_share("1").is_ok());
+        assert!(parse_guide_share("0") == Ok(0.0) && parse_guide_share("0.99") == Ok(0.99));
+        assert!(["1", "-0.1", "nan", ""].iter().all(|wrong| parse_guide_share(wrong).is_err()));
         assert!(parse_roughness("0.5").is_err() && parse_roughness("-0").is_ok());
     }
 

@@ -6,10 +6,11 @@ use std::ops::{ControlFlow, Range};
 
 use estimator_checks::{BatchMeans, Moments, Suite, Truth, slope_is};
 use lichtwerk::estimators::{
-    DirectLight, Maps, NextEvent, PhotonMapping, PhotonView, ProgressivePhotons, Sharpness, Storing,
+    DirectLight, GuideScratch, ImportonGuidance, Maps, NextEvent, Onward, PathGuidance, PhotonMapping, PhotonView,
+    ProgressivePhotons, Sharpness, Storing,
 };
 use lichtwerk::light_paths::LightPathSettings;
-use lichtwerk::photons::{DepositionName, PartitionVariant, PathLimits, PhotonSettings, Radius};
+use lichtwerk::photons::{DepositionName, GuideName, PartitionVariant, PathLimits, PhotonSettings, Radius};
 use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
 use lichtwerk::render::{Budget, CameraPass, PassContext, PassCounts, Rendering};
 use lichtwerk::samplers::SamplerName;
@@ -23,7 +24,10 @@ use scene_core::builtin::SceneBuilder;
 use scene_core::film::{Film, FilmError};
 use scene_core::glam::Vec3A;
 use scene_core::material::Material;
-use scene_core::{EmitterChoice, PowerChoice, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription, Spectrum};
+use scene_core::{
+    Emitter, EmitterChoice, PowerChoice, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription, Spectrum,
+    Vertex,
+};
 
 static SUITE: Suite = Suite::with_share("workspace photon maps", 24, 2e-8);
 
@@ -360,6 +364,145 @@ fn what_is_kept_changes_no_expectation() {
     println!("{}", all.agrees_with(SUITE.twin("cutoff"), &means("cutoff", cutoff)).expect_reject());
 }
 
+/// A corner of a room with a lamp, and far away another one of the kind, which sees nothing of it.
+fn corner() -> ReferenceScene {
+    let mut b = SceneBuilder::new("corner");
+    let (grey, red, dark) = (b.diffuse(0.7, 0.7, 0.7), b.diffuse(0.7, 0.3, 0.2), b.diffuse(0.0, 0.0, 0.0));
+    for x in [0.0, 12.0] {
+        let at = |x0: f32, y: f32, z: f32| Vec3A::new(x + x0, y, z);
+        b.quad(grey, at(-2.0, 0.0, -2.0), Vec3A::Z * 4.0, Vec3A::X * 4.0);
+        b.quad(grey, at(-2.0, 0.0, -2.0), Vec3A::X * 4.0, Vec3A::Y * 4.0);
+        b.quad(red, at(-2.0, 0.0, 2.0), Vec3A::Z * -4.0, Vec3A::Y * 4.0);
+        b.quad(dark, at(-0.5, 3.5, -0.5), Vec3A::X, Vec3A::Z).emit(Rgb::splat(10.0));
+    }
+    b.look(Vec3A::new(2.5, 2.5, 4.0), Vec3A::new(-1.0, 0.8, -1.0), 50.0, scenes::SIZE, scenes::SIZE);
+    scenes::build(b.finish())
+}
+
+/// The same where importons tell light paths where to go: each way alone, together with deposition, and past rough
+/// surfaces, coats and lights of all kinds.
+#[test]
+fn where_light_paths_go_changes_no_expectation() {
+    let scene = corner();
+    let direct = PhotonSettings {
+        gather_rays: 0,
+        photon_radius: Radius::Absolute(0.2),
+        importons: 4000,
+        importon_radius: Radius::Absolute(0.2),
+        guide_share: 0.6,
+        ..photons()
+    };
+    let means = |what: &str, photons| block_means(&format!("sent: {what}"), &scene, &mapped(photons), EFFORT);
+    let all = means("by nobody", direct.clone());
+    let guided = |guide| PhotonSettings { guide, ..direct.clone() };
+    let deposited = PhotonSettings { deposition: DepositionName::Importance, ..guided(GuideName::Both) };
+    for (name, photons) in [
+        ("guided scattering", guided(GuideName::Scattering)),
+        ("guided emission", guided(GuideName::Emission)),
+        ("guidance and deposition", deposited),
+    ] {
+        println!("{}", all.agrees_with(SUITE.check(name), &means(name, photons)).expect_pass());
+    }
+    for (name, forgets) in [("density of scattering", Forgets::Scattering), ("density of emission", Forgets::Emission)]
+    {
+        let wrong = means_of(name, EFFORT, |seed| {
+            let choice = || PowerChoice::new(scene.emitters());
+            let direct_light = NextEvent { heuristic: Power::TWO, choice: choice() };
+            let mapping = guided(GuideName::Both).mapping(&scene, direct_light, choice(), limits()).unwrap();
+            render(&scene, &Forgetful { mapping, forgets }, EFFORT.samples, seed)
+        });
+        println!("{}", all.agrees_with(SUITE.twin(name), &wrong).expect_reject());
+    }
+}
+
+#[test]
+fn guidance_changes_no_expectation_among_lights_and_materials_of_all_kinds() {
+    let scene = scenes::build(scenes::studio());
+    let means = |what: &str, guide| {
+        let photons = PhotonSettings { guide, importons: 4000, ..photons() };
+        block_means(&format!("studio: {what}"), &scene, &mapped(photons), EFFORT)
+    };
+    let all = means("unguided", GuideName::None);
+    println!("{}", all.agrees_with(SUITE.check("studio"), &means("guided", GuideName::Both)).expect_pass());
+}
+
+/// What is forgotten where importons choose.
+#[derive(Clone, Copy, PartialEq)]
+enum Forgets {
+    /// The density of the direction that was scattered to.
+    Scattering,
+    /// That of the emitter and the direction.
+    Emission,
+}
+
+/// Goes where importons say, with the flux of paths that go by themselves.
+struct Forgetting {
+    guidance: ImportonGuidance,
+    forgets: Forgets,
+}
+
+impl PathGuidance for Forgetting {
+    type Scratch = GuideScratch;
+
+    fn scratch(&self) -> GuideScratch {
+        self.guidance.scratch()
+    }
+
+    fn emit<S: Scene>(
+        &self,
+        scene: &S,
+        choice: &impl EmitterChoice,
+        scratch: &mut GuideScratch,
+        sampler: &mut impl Sampler,
+    ) -> Option<(Ray, S::Spectrum)> {
+        let (ray, flux) = self.guidance.emit(scene, choice, scratch, sampler)?;
+        // What any ray of a diffuse lamp carries whose direction goes by its cosine.
+        let power = scene.emitters().iter().fold(S::Spectrum::ZERO, |sum, emitter| sum + emitter.power());
+        Some((ray, if self.forgets == Forgets::Emission { power } else { flux }))
+    }
+
+    fn scatter<V: Vertex>(
+        &self,
+        vertex: &V,
+        scratch: &mut GuideScratch,
+        sampler: &mut impl Sampler,
+    ) -> Option<Onward<V::Spectrum>> {
+        let mut onward = self.guidance.scatter(vertex, scratch, sampler)?;
+        if self.forgets == Forgets::Scattering {
+            onward.sample.throughput = onward.own;
+        }
+        Some(onward)
+    }
+}
+
+/// Photon mapping with maps of such photons.
+struct Forgetful<D, C> {
+    mapping: PhotonMapping<D, C>,
+    forgets: Forgets,
+}
+
+impl<D: DirectLight, C: EmitterChoice + Clone + Sync> CameraPass for Forgetful<D, C> {
+    fn add_samples<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'_, S, F>,
+        film: &mut Film,
+        samples: Range<u64>,
+    ) -> Result<PassCounts, FilmError> {
+        let PhotonMapping { light, guidance, partition, paths, global, caustic, .. } = &self.mapping;
+        self.mapping.maps.get_or_init(|| {
+            let guidance = guidance.unwrap().trace(context, &light.choice).0;
+            let light = light.clone().guided(Forgetting { guidance, forgets: self.forgets });
+            let storing = Storing { partition: *partition, deposition: KeepAll, primary: false, global: true };
+            let mut photons = PhotonMaps::new();
+            storing.trace(context, &light, 0, 0..*paths, &mut photons);
+            photons.add_paths(partition, *paths);
+            let caustic = Some(PhotonView::new(photons.caustic, *caustic));
+            Maps { global: PhotonView::new(photons.global, *global), caustic }
+        });
+        self.mapping.add_samples(context, film, samples)
+    }
+}
+
 // --- The complement of connections -----------------------------------------------------------------------------------
 
 #[test]
@@ -386,10 +529,12 @@ fn images_do_not_depend_on_threads() {
     let scene = scenes::build(scenes::glass_ball());
     let few = PhotonSettings { photons: 9000, importons: 3000, ..photons() };
     let importance = PhotonSettings { deposition: DepositionName::Importance, global_ratio: 0.3, ..few.clone() };
+    let guided = PhotonSettings { guide: GuideName::Both, ..importance.clone() };
     let nearest = PhotonSettings { nearest: Some(20), gather_rays: 0, ..few.clone() };
     let caustics = PhotonSettings { caustics: true, ..few };
     let cases = [
         (EstimatorName::PhotonMap, importance, SamplerName::Sobol),
+        (EstimatorName::PhotonMap, guided, SamplerName::Sobol),
         (EstimatorName::PhotonMap, nearest.clone(), SamplerName::GlobalHalton),
         (EstimatorName::Sppm, nearest, SamplerName::Independent),
         (EstimatorName::RobustIgi, caustics, SamplerName::Sobol),
@@ -422,5 +567,8 @@ fn impossible_settings_are_errors() {
     }
     assert!(sppm(PhotonSettings { alpha: 1.0, ..photons() }) && map(PhotonSettings { nearest: Some(1), ..photons() }));
     assert!(map(PhotonSettings { global_ratio: 1e-9, ..photons() }));
+    for guide_share in [1.0, -0.5, f64::NAN] {
+        assert!(map(PhotonSettings { guide: GuideName::Both, guide_share, ..photons() }));
+    }
     assert!(map(PhotonSettings { caustic_roughness: f32::NAN, ..photons() }));
 }

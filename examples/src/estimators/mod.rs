@@ -27,8 +27,9 @@ pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
 pub use photon_lights::PhotonLights;
 pub use photons::{
-    Importance, ImportonTracing, MAX_LENGTH, Maps, PhotonCaustics, PhotonEye, PhotonMapping, PhotonTracing, PhotonView,
-    ProgressivePhotons, Sharpness, Storing, WithCaustics,
+    GuidanceTracing, GuideScratch, Importance, ImportonGuidance, ImportonTracing, MAX_LENGTH, Maps, Onward,
+    PathGuidance, PhotonCaustics, PhotonEye, PhotonMapping, PhotonTracing, PhotonView, ProgressivePhotons, Sharpness,
+    Storing, Unguided, WithCaustics,
 };
 pub use resampled::{
     EnvironmentSampling, LightCandidate, LightPoint, LightSource, LightTarget, Place, PointTarget, ResampledDirect,

@@ -66,7 +66,7 @@ impl<E: CameraEstimator> Observable for E {
     }
 }
 
-impl<D: DirectLight, C: EmitterChoice + Sync> Observable for PhotonMapping<D, C> {
+impl<D: DirectLight, C: EmitterChoice + Clone + Sync> Observable for PhotonMapping<D, C> {
     type Prepared<V: Vertex + Send + Sync> = ();
 
     fn prepare<'s, S: Scene + Sync, F: SamplerFamily>(

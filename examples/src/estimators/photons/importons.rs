@@ -9,7 +9,8 @@ use photon_map::{
 use qmc_sampling::{Sampler, SamplerFamily};
 use rayon::prelude::*;
 use scene_core::{
-    Counting, RayCounts, RussianRoulette, Scene, Sensor, Spectrum, TransportMode, Vertex, WalkStart, random_walk,
+    Counting, RayCounts, RussianRoulette, Scene, Sensor, Spectrum, TransportMode, Vertex, WalkStart, WalkVertex,
+    random_walk,
 };
 
 use super::Sharpness;
@@ -51,6 +52,40 @@ pub struct Importance {
     bound: Bound,
 }
 
+/// What importons are left for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To tell where photons are kept: where eye paths ask for them.
+    Deposition,
+    /// To tell where light paths go: where what they do next arrives at places of the first kind, or goes on to some.
+    Guidance,
+}
+
+/// Importons while they are collected.
+#[derive(Debug, Default)]
+pub(super) struct Importons {
+    /// At surfaces that scatter.
+    pub(super) surfaces: Photons<f32>,
+    /// At emitters, of their names, for guidance: each carries importance times radiance.
+    pub(super) emitters: Photons<f32>,
+}
+
+impl Importons {
+    fn append(&mut self, other: Self) {
+        self.surfaces.append(other.surfaces);
+        self.emitters.append(other.emitters);
+    }
+}
+
+/// Importons by place; `radius` is what most queries will have.
+///
+/// # Panics
+/// If nobody counted their paths, or the radius is not positive and finite.
+pub(super) fn sorted(importons: Photons<f32>, estimation: DensityEstimation, radius: f32) -> ImportanceMap {
+    let map = PhotonMap::par_build(importons, radius);
+    ImportanceMap::new(map.expect("paths are counted, and radii of a gather are in range"), estimation)
+}
+
 /// Number of paths that one task traces.
 const PATHS_PER_TASK: u64 = 1024;
 /// Largest number of sharp bounces of an importon's path.
@@ -67,37 +102,39 @@ impl ImportonTracing {
     ) -> Result<(Importance, RayCounts), BoundError> {
         let bound = self.bound.validate()?;
         let paths = self.paths.max(1);
-        let (importons, mut rays) = self.paths(context, 0, paths);
-        let map = PhotonMap::par_build(importons, self.estimation.gather.max_radius());
-        let map = map.expect("paths are counted, and radii of a gather are in range");
-        let map = ImportanceMap::new(map, self.estimation);
-        let (tests, counts) = self.paths(context, paths, self.test_paths);
+        let (importons, mut rays) = self.paths(context, Purpose::Deposition, 0, paths);
+        let map = sorted(importons.surfaces, self.estimation, self.estimation.gather.max_radius());
+        let (tests, counts) = self.paths(context, Purpose::Deposition, paths, self.test_paths);
         rays += counts;
+        let tests = tests.surfaces;
         let queries: Vec<f64> = tests.as_slice().par_iter().map(|test| map.at(test.position())).collect();
         let scale = ImportanceScale::from_queries(queries, self.quantile).ok();
         Ok((Importance { map, scale, bound }, rays))
     }
 
     /// The importons of so many paths, from number `first` on.
-    fn paths<S: Scene + Sync, F: SamplerFamily>(
+    pub(super) fn paths<S: Scene + Sync, F: SamplerFamily>(
         &self,
         context: &PassContext<'_, S, F>,
+        purpose: Purpose,
         first: u64,
         count: u64,
-    ) -> (Photons<f32>, RayCounts) {
+    ) -> (Importons, RayCounts) {
         let end = first + count;
         let task = |start: u64| {
             let scene = Counting::new(context.scene);
-            let mut importons = Photons::new();
-            for path in start..end.min(start + PATHS_PER_TASK) {
-                self.path(&scene, context.importon_sampler(path), &mut importons);
-                importons.add_paths(1);
+            let mut importons = Importons::default();
+            let paths = start..end.min(start + PATHS_PER_TASK);
+            importons.surfaces.add_paths(paths.end - paths.start);
+            importons.emitters.add_paths(paths.end - paths.start);
+            for path in paths {
+                self.path(&scene, context.importon_sampler(path), purpose, &mut importons);
             }
             (importons, scene.counts())
         };
         let starts: Vec<u64> = (first..end).step_by(PATHS_PER_TASK as usize).collect();
         let tasks: Vec<_> = starts.into_par_iter().map(task).collect();
-        let mut all = (Photons::new(), RayCounts::default());
+        let mut all = (Importons::default(), RayCounts::default());
         for (importons, counts) in tasks {
             all.0.append(importons);
             all.1 += counts;
@@ -105,7 +142,7 @@ impl ImportonTracing {
         all
     }
 
-    fn path<S: Scene>(&self, scene: &S, mut sampler: impl Sampler, importons: &mut Photons<f32>) {
+    fn path<S: Scene>(&self, scene: &S, mut sampler: impl Sampler, purpose: Purpose, importons: &mut Importons) {
         let [width, height] = scene.sensor().resolution().map(|side| side as f32);
         let [x, y] = sampler.next_2d();
         let ray = scene.sensor().sample_ray([x * width, y * height], sampler.next_2d());
@@ -119,22 +156,52 @@ impl ImportonTracing {
         // The number of bounces so far that were not sharp, and what the next vertex needs to know of this one.
         let (mut bounces, mut departure) = (0, None);
         random_walk(scene, start, &mut sampler, |walk| {
+            let mut is_sharp = false;
             if let Some(departure) = &departure {
                 let last = self.sharpness.last_bounce(Some(departure), &walk);
-                bounces += u32::from(!self.sharpness.rule.is_caustic(last));
+                is_sharp = self.sharpness.rule.is_caustic(last);
+                bounces += u32::from(!is_sharp);
             }
-            if bounces > self.bounces {
-                return ControlFlow::Break(());
+            match purpose {
+                Purpose::Deposition if bounces > self.bounces => return ControlFlow::Break(()),
+                Purpose::Deposition => importons.leave_at_surface(&walk),
+                Purpose::Guidance => {
+                    // Light from here to the last vertex is asked for there, or scattered to where it is. A caustic is
+                    // asked for wherever eye paths ask for anything.
+                    let caustic = bounces > 0 && is_sharp;
+                    if bounces > self.bounces || caustic {
+                        importons.leave_at_surface(&walk);
+                    }
+                    // The same with final gathering; without, direct light is found otherwise.
+                    if bounces > 1 || caustic {
+                        importons.leave_at_emitter(&walk);
+                    }
+                }
             }
-            let vertex = walk.vertex;
-            if vertex.is_connectible() {
-                let (position, wi) = (vertex.point().position.to_array(), vertex.wo().to_array());
-                importons.store(Photon::new(position, wi, walk.throughput.luminance()));
-            }
-            departure = Some(super::sharpness::Departure::of(vertex));
+            departure = Some(super::sharpness::Departure::of(walk.vertex));
             ControlFlow::Continue(())
         });
     }
+}
+
+impl Importons {
+    fn leave_at_surface<V: Vertex>(&mut self, walk: &WalkVertex<'_, V, V::Spectrum>) {
+        if walk.vertex.is_connectible() {
+            self.surfaces.store(importon(walk.vertex, walk.throughput.luminance()));
+        }
+    }
+
+    fn leave_at_emitter<V: Vertex>(&mut self, walk: &WalkVertex<'_, V, V::Spectrum>) {
+        let Some(emitter) = walk.vertex.emitter() else { return };
+        let importance = (walk.throughput * walk.vertex.emitted()).luminance();
+        if importance > 0.0 {
+            self.emitters.store(importon(walk.vertex, importance).from_light(emitter.0));
+        }
+    }
+}
+
+fn importon<V: Vertex>(vertex: &V, importance: f32) -> Photon<f32> {
+    Photon::new(vertex.point().position.to_array(), vertex.wo().to_array(), importance)
 }
 
 impl Deposition for Importance {

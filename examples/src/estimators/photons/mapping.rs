@@ -3,12 +3,12 @@
 use core::ops::Range;
 use std::sync::OnceLock;
 
-use photon_map::{DensityEstimation, KeepAll, MapPartition, PhotonMaps};
+use photon_map::{DensityEstimation, Deposition, KeepAll, MapPartition, PhotonMaps};
 use qmc_sampling::SamplerFamily;
 use scene_core::film::{Film, FilmError};
 use scene_core::{EmitterChoice, RayCounts, Scene};
 
-use super::{ImportonTracing, Maps, PhotonEye, PhotonTracing, PhotonView, Storing};
+use super::{GuidanceTracing, ImportonTracing, Maps, PhotonEye, PhotonTracing, PhotonView, Storing};
 use crate::estimators::DirectLight;
 use crate::render::{CameraPass, PassContext, PassCounts};
 
@@ -30,6 +30,8 @@ pub struct PhotonMapping<D, C> {
     pub partition: MapPartition,
     /// Where photons are kept; everywhere without.
     pub importons: Option<ImportonTracing>,
+    /// Where light paths are sent; as emitters and materials have it without.
+    pub guidance: Option<GuidanceTracing>,
     /// How the global map is looked at.
     pub global: DensityEstimation,
     /// How the caustic map is looked at.
@@ -38,7 +40,7 @@ pub struct PhotonMapping<D, C> {
     pub maps: OnceLock<Maps>,
 }
 
-impl<D: DirectLight, C: EmitterChoice + Sync> PhotonMapping<D, C> {
+impl<D: DirectLight, C: EmitterChoice + Clone + Sync> PhotonMapping<D, C> {
     /// The maps, which are made first if they are not there yet, and the rays that this took.
     pub fn maps<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (&Maps, RayCounts) {
         let mut rays = RayCounts::default();
@@ -52,28 +54,47 @@ impl<D: DirectLight, C: EmitterChoice + Sync> PhotonMapping<D, C> {
 
     /// Makes the maps.
     pub fn make<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (Maps, RayCounts) {
-        let (partition, primary, mut rays) = (self.partition, self.eye.gather > 0, RayCounts::default());
-        let mut photons = PhotonMaps::new();
         // A bound that is out of range is refused with the settings; here it would mean that every photon is kept.
         match self.importons.and_then(|importons| importons.trace(context).ok()) {
-            Some((deposition, counts)) => {
+            Some((deposition, mut rays)) => {
+                let (photons, counts) = self.photons(context, deposition);
                 rays += counts;
-                let storing = Storing { partition, deposition, primary, global: true };
-                rays += storing.trace(context, &self.light, 0, 0..self.paths, &mut photons);
+                (self.sorted(photons), rays)
             }
             None => {
-                let storing = Storing { partition, deposition: KeepAll, primary, global: true };
-                rays += storing.trace(context, &self.light, 0, 0..self.paths, &mut photons);
+                let (photons, rays) = self.photons(context, KeepAll);
+                (self.sorted(photons), rays)
             }
         }
-        photons.add_paths(&partition, self.paths);
+    }
+
+    fn photons<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'_, S, F>,
+        deposition: impl Deposition + Sync,
+    ) -> (PhotonMaps<[f32; 3]>, RayCounts) {
+        let storing = Storing { partition: self.partition, deposition, primary: self.eye.gather > 0, global: true };
+        let (mut photons, paths) = (PhotonMaps::new(), 0..self.paths);
+        let rays = match self.guidance {
+            Some(guidance) => {
+                let (guidance, mut rays) = guidance.trace(context, &self.light.choice);
+                rays += storing.trace(context, &self.light.clone().guided(guidance), 0, paths, &mut photons);
+                rays
+            }
+            None => storing.trace(context, &self.light, 0, paths, &mut photons),
+        };
+        photons.add_paths(&self.partition, self.paths);
+        (photons, rays)
+    }
+
+    /// Maps of photons whose paths were counted.
+    fn sorted(&self, photons: PhotonMaps<[f32; 3]>) -> Maps {
         let global = PhotonView::new(photons.global, self.global);
-        let caustic = Some(PhotonView::new(photons.caustic, self.caustic));
-        (Maps { global, caustic }, rays)
+        Maps { global, caustic: Some(PhotonView::new(photons.caustic, self.caustic)) }
     }
 }
 
-impl<D: DirectLight, C: EmitterChoice + Sync> CameraPass for PhotonMapping<D, C> {
+impl<D: DirectLight, C: EmitterChoice + Clone + Sync> CameraPass for PhotonMapping<D, C> {
     fn add_samples<S: Scene + Sync, F: SamplerFamily>(
         &self,
         context: &PassContext<'_, S, F>,

@@ -45,6 +45,15 @@ impl<S: Spectrum> Flux for Sum<S> {
 /// Cosines below are taken for this one: photons that graze the surface are few, and worth little.
 const LEAST_COSINE: f32 = 1e-4;
 
+/// Where photons or importons count for a vertex.
+pub(super) fn gather_point<X: Vertex>(x: &X) -> GatherPoint {
+    let point = x.point();
+    let side = if point.normal.dot(x.wo()) < 0.0 { -point.normal } else { point.normal };
+    let at = GatherPoint::on(point.position.to_array(), side.to_array());
+    // What arrives at the other side may be transmitted; the BSDF knows.
+    if x.lambertian().is_none() { at.with_least_cosine(-1.0) } else { at }
+}
+
 impl PhotonView {
     /// Sorts photons.
     ///
@@ -72,13 +81,7 @@ impl PhotonView {
         scratch: &mut Scratch,
         counts: impl Fn(Vec3A) -> bool,
     ) -> X::Spectrum {
-        let (point, lambertian) = (x.point(), x.lambertian());
-        let side = if point.normal.dot(x.wo()) < 0.0 { -point.normal } else { point.normal };
-        let mut at = GatherPoint::on(point.position.to_array(), side.to_array());
-        if lambertian.is_none() {
-            // What arrives at the other side may be transmitted; the BSDF knows.
-            at = at.with_least_cosine(-1.0);
-        }
+        let (point, lambertian, at) = (x.point(), x.lambertian(), gather_point(x));
         let contribution = |photon: &PackedPhoton<[f32; 3]>| {
             let flux = X::Spectrum::from_rgb(photon.flux());
             if longest < u32::MAX && photon.unpack().light.is_some_and(|length| length > longest) {

@@ -2,6 +2,7 @@
 //!
 //! - [`Sharpness`]: which bounces eye paths follow, and which photons are caustic.
 //! - [`PhotonTracing`], [`Storing`]: light paths, and which of their photons are kept.
+//! - [`PathGuidance`]: where light paths are sent; [`Unguided`], [`ImportonGuidance`].
 //! - [`ImportonTracing`]: paths from the sensor that say where photons are wanted.
 //! - [`PhotonView`], [`Maps`]: photons by place, and the radiance that surfaces scatter of them.
 //! - [`PhotonEye`]: eye paths.
@@ -12,6 +13,7 @@
 
 mod caustics;
 mod eye;
+mod guidance;
 mod importons;
 mod mapping;
 mod maps;
@@ -21,6 +23,7 @@ mod tracing;
 
 pub use caustics::{PhotonCaustics, WithCaustics};
 pub use eye::PhotonEye;
+pub use guidance::{GuidanceTracing, GuideScratch, ImportonGuidance, Onward, PathGuidance, Unguided};
 pub use importons::{Importance, ImportonTracing};
 pub use mapping::PhotonMapping;
 pub use maps::{Maps, PhotonView};

@@ -5,12 +5,10 @@ use core::ops::{ControlFlow, Range};
 use photon_map::{CausticRule, Deposition, MapPartition, Photon, PhotonMaps};
 use qmc_sampling::{Sampler, SamplerFamily};
 use rayon::prelude::*;
-use scene_core::{
-    Counting, Emitter, EmitterChoice, RayCounts, RussianRoulette, Scene, Spectrum, TransportMode, Vertex, WalkStart,
-    random_walk,
-};
+use scene_core::{Counting, EmitterChoice, RayCounts, RussianRoulette, Scene, Spectrum, Vertex};
 
-use super::sharpness::{Departure, Sharpness};
+use super::guidance::{Onward, PathGuidance, Unguided};
+use super::sharpness::{Departure, LastDirection, Sharpness};
 use crate::render::PassContext;
 
 /// Light paths of a photon map.
@@ -21,9 +19,9 @@ use crate::render::PassContext;
 /// **Symbols.** `p`: densities of what was sampled; `q`: probability to survive Russian roulette; `f*`: adjoint BSDF.
 /// W, of one path: the maps divide by the number of paths.
 ///
-/// **Cost.** One closest hit per photon.
+/// **Cost.** One closest hit per photon, and what the guidance takes.
 #[derive(Clone, Copy, Debug)]
-pub struct PhotonTracing<C> {
+pub struct PhotonTracing<C, G = Unguided> {
     /// Chooses the emitter.
     pub choice: C,
     /// Largest number of segments.
@@ -32,48 +30,67 @@ pub struct PhotonTracing<C> {
     pub roulette: RussianRoulette,
     /// Which photons are caustic.
     pub sharpness: Sharpness,
+    /// Where paths are sent.
+    pub guidance: G,
 }
 
 /// Longest paths whose length a photon can tell: longer ones end.
 pub const MAX_LENGTH: u32 = Photon::<f32>::MAX_LIGHT;
 
-impl<C: EmitterChoice> PhotonTracing<C> {
+impl<C, G> PhotonTracing<C, G> {
+    /// The same with another guidance.
+    pub fn guided<H>(self, guidance: H) -> PhotonTracing<C, H> {
+        let Self { choice, max_length, roulette, sharpness, .. } = self;
+        PhotonTracing { choice, max_length, roulette, sharpness, guidance }
+    }
+}
+
+impl<C: EmitterChoice, G: PathGuidance> PhotonTracing<C, G> {
     /// Traces one path, and shows its photons: where connections can be made, as connections are what they stand for.
+    ///
+    /// The path is that of [`random_walk`](scene_core::random_walk), with the choice of directions left to the guidance.
     pub fn trace<S: Scene>(
         &self,
         scene: &S,
+        scratch: &mut G::Scratch,
         sampler: &mut impl Sampler,
         mut arrive: impl FnMut(Photon<[f32; 3]>) -> ControlFlow<()>,
     ) {
-        // Emit.
-        let choose = sampler.next_1d();
-        let (u_position, u_direction) = (sampler.next_2d(), sampler.next_2d());
-        let Some(chosen) = self.choice.choose(None, choose) else { return };
-        let emitter = &scene.emitters()[chosen.id.index()];
-        let Some(emission) = emitter.sample_emission(u_position, u_direction) else { return };
-        let start = WalkStart {
-            ray: emission.point.ray_along(emission.direction),
-            throughput: emission.flux * (1.0 / chosen.probability),
-            mode: TransportMode::Importance,
-            max_length: self.max_length.min(MAX_LENGTH),
-            roulette: self.roulette,
-        };
+        let Some((mut ray, mut throughput)) = self.guidance.emit(scene, &self.choice, scratch, sampler) else { return };
+        let mut relative = S::Spectrum::splat(1.0);
+        let (mut departure, mut last) = (None, LastDirection::default());
+        let longest = self.max_length.min(MAX_LENGTH);
+        for length in 1..=longest {
+            let Some(vertex) = scene.intersect(&ray) else { return };
+            if vertex.is_connectible() {
+                let (position, wi) = (vertex.point().position.to_array(), vertex.wo().to_array());
+                let photon = Photon::new(position, wi, throughput.to_rgb()).from_light(length);
+                let bounce = self.sharpness.bounce(departure.as_ref(), &last, vertex.wo());
+                if arrive(CausticRule::label(&self.sharpness.rule, photon, bounce)).is_break() {
+                    return;
+                }
+            }
+            if length == longest {
+                return;
+            }
 
-        // Walk.
-        let mut departure: Option<Departure> = None;
-        random_walk(scene, start, sampler, |walk| {
-            let vertex = walk.vertex;
-            let flow = if vertex.is_connectible() {
-                let last = self.sharpness.last_bounce(departure.as_ref(), &walk);
-                let photon =
-                    Photon::new(vertex.point().position.to_array(), vertex.wo().to_array(), walk.throughput.to_rgb());
-                arrive(CausticRule::label(&self.sharpness.rule, photon.from_light(walk.length), last))
-            } else {
-                ControlFlow::Continue(())
-            };
-            departure = Some(Departure::of(vertex));
-            flow
-        });
+            // Scatter.
+            let Some(Onward { sample, own }) = self.guidance.scatter(&vertex, scratch, sampler) else { return };
+            relative *= sample.throughput;
+            // Survive.
+            let survival = self.roulette.survival_probability(length, own, relative, 1.0);
+            if survival < 1.0 && sampler.next_1d() >= survival {
+                return;
+            }
+            throughput *= sample.throughput * (1.0 / survival);
+            relative *= S::Spectrum::splat(1.0 / survival);
+            if throughput.is_black() || !throughput.is_finite() {
+                return;
+            }
+            last = LastDirection { pdf_solid_angle: sample.pdf_solid_angle, is_specular: sample.is_specular };
+            departure = Some(Departure::of(&vertex));
+            ray = vertex.spawn_ray(sample.wi);
+        }
     }
 }
 
@@ -107,10 +124,10 @@ impl<D: Deposition + Sync> Storing<D> {
     /// the paths. `first` is the number of the path that counts as the first one of the partition.
     ///
     /// Counts no paths: whoever has them all calls [`PhotonMaps::add_paths`].
-    pub fn trace<S: Scene + Sync, F: SamplerFamily, C: EmitterChoice + Sync>(
+    pub fn trace<S: Scene + Sync, F: SamplerFamily, C: EmitterChoice + Sync, G: PathGuidance>(
         &self,
         context: &PassContext<'_, S, F>,
-        tracing: &PhotonTracing<C>,
+        tracing: &PhotonTracing<C, G>,
         first: u64,
         paths: Range<u64>,
         maps: &mut PhotonMaps<[f32; 3]>,
@@ -118,9 +135,10 @@ impl<D: Deposition + Sync> Storing<D> {
         let starts: Vec<u64> = paths.clone().step_by(PATHS_PER_TASK as usize).collect();
         let task = |start: u64| {
             let scene = Counting::new(context.scene);
-            let mut kept = PhotonMaps::new();
+            let (mut kept, mut scratch) = (PhotonMaps::new(), tracing.guidance.scratch());
             for path in start..paths.end.min(start + PATHS_PER_TASK) {
-                self.trace_path(&scene, tracing, context.photon_sampler(path), path - first, &mut kept);
+                let sampler = context.photon_sampler(path);
+                self.trace_path(&scene, tracing, &mut scratch, sampler, path - first, &mut kept);
             }
             (kept, scene.counts())
         };
@@ -133,16 +151,17 @@ impl<D: Deposition + Sync> Storing<D> {
         rays
     }
 
-    fn trace_path<S: Scene>(
+    fn trace_path<S: Scene, G: PathGuidance>(
         &self,
         scene: &S,
-        tracing: &PhotonTracing<impl EmitterChoice>,
+        tracing: &PhotonTracing<impl EmitterChoice, G>,
+        scratch: &mut G::Scratch,
         mut sampler: impl Sampler,
         path: u64,
         kept: &mut PhotonMaps<[f32; 3]>,
     ) {
         let mut numbers = sampler.fork(DEPOSITION_DOMAIN);
-        tracing.trace(scene, &mut sampler, |photon| {
+        tracing.trace(scene, scratch, &mut sampler, |photon| {
             let u = [fine(&mut numbers), fine(&mut numbers)];
             let wanted = if photon.caustic { true } else { self.global && (self.primary || !photon.primary) };
             if wanted && let Some(photon) = self.partition.decide(photon, path, &self.deposition, u) {

@@ -1,13 +1,15 @@
 //! The standard map against maps that keep photons where the camera looks.
 
-use photon_map::{Bound, Deposition, KeepAll, PhotonMap};
+use photon_map::{Bound, KeepAll, PhotonMap};
 use qmc_sampling::Replications;
+use scene_core::PowerChoice;
 
 use super::places::{Look, Places};
 use super::top_view::top_view;
 use super::{Traced, Tracer, limits, storing};
+use crate::estimators::{Importance, ImportonGuidance, ImportonTracing, PhotonTracing};
 use crate::experiments::{Context, Report, Row, Setup};
-use crate::photons::PhotonSettings;
+use crate::photons::{GuideName, PhotonSettings};
 use crate::program::Failure;
 
 /// What is compared.
@@ -20,6 +22,7 @@ pub(super) struct Comparison<'a> {
     /// Radii to look with; each map gets the one that is best for it.
     pub(super) radii: &'a [f32],
     pub(super) trials: u64,
+    /// Among them what is guided, if anything is.
     pub(super) settings: PhotonSettings,
     /// Prefix of the pictures.
     pub(super) figure: &'a str,
@@ -37,7 +40,7 @@ pub(super) struct Measured {
     pub(super) same_radius: Replications,
     paths: Replications,
     stored: Replications,
-    seconds: Replications,
+    pub(super) seconds: Replications,
     rays: Replications,
     radius: Replications,
     /// Photons per query.
@@ -57,50 +60,83 @@ struct Best {
     error: f64,
 }
 
-/// The maps: standard, by importance with as many photons, with a tenth of them, and with a tenth and a cutoff.
-pub(super) struct Result4 {
+/// The maps: standard, by importance with as many photons, with a tenth of them, and with a tenth and a cutoff; then of
+/// guided paths, and of guided paths with as many photons by importance, if these are asked for.
+pub(super) struct Compared {
     pub(super) standard: Measured,
     pub(super) importance: Measured,
     pub(super) tenth: Measured,
     pub(super) cutoff: Measured,
+    pub(super) guided: Measured,
+    pub(super) guided_importance: Measured,
 }
 
 impl Comparison<'_> {
     /// Measures all of them, and adds their rows.
-    pub(super) fn run(&self, report: &mut Report) -> Result<Result4, Failure> {
-        let [mut standard, mut importance, mut tenth, mut cutoff] = std::array::from_fn(|_| Measured::default());
+    pub(super) fn run(&self, report: &mut Report) -> Result<Compared, Failure> {
+        let mut standard = Measured::default();
+        let [mut importance, mut tenth, mut cutoff, mut guided, mut guided_importance] =
+            std::array::from_fn(|_| Measured::default());
+        let floor = Bound::Floor(self.settings.deposition_floor);
         let progress = self.context.progress(self.trials);
         for trial in 0..self.trials {
-            let seed = |what: &str| self.context.seed_of(what, trial);
-            let tracer = |what: &str| Tracer::new(self.setup, &self.settings, seed(what));
+            let tracer = |what: &str| Tracer::new(self.setup, &self.settings, self.context.seed_of(what, trial));
             let maps = tracer("standard")?;
-            self.take(&mut standard, maps.until(&storing(KeepAll)?, self.stored), "standard", trial, None)?;
+            let traced = maps.until(&maps.light, &storing(KeepAll)?, self.stored);
+            self.take(&mut standard, traced, "standard", trial, None)?;
             let first = standard.best;
             for (measured, what, stored, bound) in [
-                (&mut importance, "importance", self.stored, Bound::Floor(self.settings.deposition_floor)),
-                (&mut tenth, "tenth", self.stored / 10, Bound::Floor(self.settings.deposition_floor)),
+                (&mut importance, "importance", self.stored, floor),
+                (&mut tenth, "tenth", self.stored / 10, floor),
                 (&mut cutoff, "cutoff", self.stored / 10, Bound::Cutoff(CUTOFF)),
             ] {
                 let tracer = tracer(what)?;
-                let mut importons = self.settings.importon_tracing(&self.setup.scene, limits())?;
-                importons.bound = bound;
-                let deposition = importons.trace(&tracer.context())?.0;
+                let deposition = self.importance(&tracer, bound)?;
                 if trial == 0 && what == "importance" {
                     let positions = deposition.map.importons().photons().iter().map(|photon| photon.position());
                     let picture = top_view(&self.setup.scene, positions)?;
                     self.context.save_picture(&format!("{}-importons", self.figure), &picture, 0.0)?;
                 }
-                self.take(measured, traced(&tracer, deposition, stored)?, what, trial, first)?;
+                let traced = tracer.until(&tracer.light, &storing(deposition)?, stored);
+                self.take(measured, traced, what, trial, first)?;
+            }
+            if self.settings.guide != GuideName::None {
+                let maps = tracer("guided")?;
+                let traced = maps.until(&self.guided(&maps)?, &storing(KeepAll)?, self.stored);
+                self.take(&mut guided, traced, "guided", trial, first)?;
+                let maps = tracer("guided-importance")?;
+                let storing = storing(self.importance(&maps, floor)?)?;
+                let traced = maps.until(&self.guided(&maps)?, &storing, self.stored);
+                self.take(&mut guided_importance, traced, "guided-importance", trial, first)?;
             }
             progress.add(1);
         }
         progress.finish();
-        for (measured, what) in
-            [(&standard, "standard"), (&importance, "importance"), (&tenth, "tenth"), (&cutoff, "tenth, cutoff")]
-        {
-            report.rows.push(self.row(measured, what));
+        for (measured, what) in [
+            (&standard, "standard"),
+            (&importance, "importance"),
+            (&tenth, "tenth"),
+            (&cutoff, "tenth, cutoff"),
+            (&guided, "guided"),
+            (&guided_importance, "guided, importance"),
+        ] {
+            if measured.best.is_some() {
+                report.rows.push(self.row(measured, what));
+            }
         }
-        Ok(Result4 { standard, importance, tenth, cutoff })
+        Ok(Compared { standard, importance, tenth, cutoff, guided, guided_importance })
+    }
+
+    /// Where photons are kept.
+    fn importance(&self, tracer: &Tracer<'_>, bound: Bound) -> Result<Importance, Failure> {
+        let importons = self.settings.importon_tracing(&self.setup.scene, limits())?;
+        Ok(ImportonTracing { bound, ..importons }.trace(&tracer.context())?.0)
+    }
+
+    /// Light paths that importons guide, as the settings say.
+    fn guided(&self, tracer: &Tracer<'_>) -> Result<PhotonTracing<PowerChoice, ImportonGuidance>, Failure> {
+        let guidance = self.settings.guidance(&self.setup.scene, limits())?.ok_or("nothing is guided")?;
+        Ok(tracer.light.clone().guided(guidance.trace(&tracer.context(), &tracer.light.choice).0))
     }
 
     /// Takes in a map.
@@ -180,10 +216,6 @@ impl Comparison<'_> {
 
 /// Below it nothing is kept, with a cutoff.
 const CUTOFF: f64 = 0.05;
-
-fn traced(tracer: &Tracer<'_>, deposition: impl Deposition + Sync, stored: usize) -> Result<Traced, Failure> {
-    Ok(tracer.until(&storing(deposition)?, stored))
-}
 
 /// The same photons, of so many paths.
 fn recounted(photons: photon_map::Photons<[f32; 3]>, paths: u64) -> photon_map::Photons<[f32; 3]> {

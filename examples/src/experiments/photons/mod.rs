@@ -18,7 +18,7 @@ use qmc_sampling::OwenSobol;
 use scene_core::{PowerChoice, RayCounts, ReferenceScene, RussianRoulette, Scene};
 
 use super::{Claim, Ratio, Setup};
-use crate::estimators::{PhotonTracing, Storing};
+use crate::estimators::{PathGuidance, PhotonTracing, Storing};
 use crate::photons::{PathLimits, PhotonError, PhotonSettings};
 use crate::program::Failure;
 use crate::render::PassContext;
@@ -63,11 +63,16 @@ impl<'a> Tracer<'a> {
     }
 
     /// Traces until this number of photons is kept, or a little more.
-    fn until<D: Deposition + Sync>(&self, storing: &Storing<D>, stored: usize) -> Traced {
+    fn until<D: Deposition + Sync, G: PathGuidance>(
+        &self,
+        light: &PhotonTracing<PowerChoice, G>,
+        storing: &Storing<D>,
+        stored: usize,
+    ) -> Traced {
         let (mut photons, start) = (PhotonMaps::new(), Instant::now());
         let (mut paths, mut rays) = (0, RayCounts::default());
         while photons.global.len() + photons.caustic.len() < stored && paths < MAX_PATHS {
-            rays += storing.trace(&self.context(), &self.light, 0, paths..paths + PORTION, &mut photons);
+            rays += storing.trace(&self.context(), light, 0, paths..paths + PORTION, &mut photons);
             paths += PORTION;
         }
         photons.add_paths(&storing.partition, paths);

@@ -185,10 +185,10 @@ fn projection(context: &Context, setup: &Setup, report: &mut Report) -> Result<(
                 };
                 if confined {
                     let mut sampler = Projected { sampler, map: &map, pairs: 0 };
-                    tracer.light.trace(&setup.scene, &mut sampler, arrive);
+                    tracer.light.trace(&setup.scene, &mut (), &mut sampler, arrive);
                 } else {
                     let mut sampler = sampler;
-                    tracer.light.trace(&setup.scene, &mut sampler, arrive);
+                    tracer.light.trace(&setup.scene, &mut (), &mut sampler, arrive);
                 }
             }
             (flux / paths as f64, count / paths as f64)
