@@ -52,7 +52,8 @@ fn the_fence_and_the_leaves_are_full_of_edges() {
     assert!(smooth < 0.01 && fence > 0.05 && foliage > 0.02, "{smooth} {fence} {foliage}");
 }
 
-/// Paths that enter the object where the camera sees it: those that come out do so at many places, some of them far away.
+/// Paths that enter the object where the camera sees it: those that come out do so at many places, some of them far
+/// away.
 #[test]
 fn light_crosses_the_translucent_object() {
     let scene = build(builtin::translucent_blob());

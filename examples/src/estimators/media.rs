@@ -4,24 +4,22 @@ use qmc_sampling::Sampler;
 use scene_core::medium::{Medium, MediumExit};
 use scene_core::{Ray, Scene};
 
-/// The sub-streams of the numbers for walks through media, one per length of the path: so many numbers are taken as there are scatterings, and the path
-/// keeps its own.
+/// The sub-streams of the numbers for walks through media, one per length of the path: so many numbers are taken as
+/// there are scatterings, and the path keeps its own.
 const MEDIUM_DOMAIN: u32 = 0x6d65_6469;
 
-/// What `ray` finds next, through `medium` if it runs through one; nothing if the path ends in there.
-#[inline]
-pub(super) fn follow<'s, S: Scene>(
+/// What `ray` finds beyond `medium`; nothing if the path ends in there. Out of line: the loop of paths without media
+/// stays short.
+#[inline(never)]
+pub(super) fn through<'s, S: Scene>(
     scene: &'s S,
-    medium: Option<&Medium<S::Spectrum>>,
+    medium: &Medium<S::Spectrum>,
     ray: Ray,
     throughput: S::Spectrum,
     length: u32,
     sampler: &impl Sampler,
 ) -> Option<MediumExit<S::Vertex<'s>, S::Spectrum>> {
-    match medium {
-        None => Some(MediumExit { vertex: scene.intersect(&ray), ray, throughput, scatterings: 0 }),
-        Some(medium) => medium.walk(scene, ray, throughput, &mut sampler.fork(MEDIUM_DOMAIN.wrapping_add(length))),
-    }
+    medium.walk(scene, ray, throughput, &mut sampler.fork(MEDIUM_DOMAIN.wrapping_add(length)))
 }
 
 #[cfg(test)]

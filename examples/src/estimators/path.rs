@@ -5,7 +5,7 @@ use scene_core::{Ray, RussianRoulette, Scene, Spectrum, SurfacePoint, Vertex};
 use vpl_gi::{Found, Observer};
 
 use super::direct::{DirectLight, Scattered};
-use super::media::follow;
+use super::media::through;
 use super::scattering::{OwnSampling, ScatterSampling};
 use super::{CameraEstimator, FirstHit};
 
@@ -30,8 +30,8 @@ pub enum FirstEvent {
 /// probability of surviving Russian roulette `q`, and shares `w_l + w_s = 1`. Light without area (Dirac deltas) has
 /// `w_l = 1`; after specular scattering `w_s = 1`.
 ///
-/// Where the path runs through a participating medium, a walk from surface to surface takes the place of a segment, however often it scatters; light is
-/// found there by leaving.
+/// Where the path runs through a participating medium, a walk from surface to surface takes the place of a segment,
+/// however often it scatters; light is found there by leaving.
 ///
 /// Unbiased up to `max_depth`. Cost: one closest hit per vertex, and what the search for emitters takes.
 ///
@@ -66,12 +66,16 @@ impl<D: DirectLight, B: ScatterSampling> CameraEstimator for PathTracer<D, B> {
         let mut last: Option<(SurfacePoint, f32)> = None;
         let mut medium = None;
         for length in 1..=self.max_depth {
-            let Some(found) = follow(scene, medium.as_ref(), ray, throughput, length, sampler) else { break };
-            let vertex = found.vertex;
-            if found.scatterings > 0 {
-                last = None;
-            }
-            (ray, throughput) = (found.ray, found.throughput);
+            let vertex = match &medium {
+                None => scene.intersect(&ray),
+                Some(medium) => {
+                    let Some(exit) = through(scene, medium, ray, throughput, length, sampler) else { break };
+                    // What scattered inside could not have been found from the last vertex.
+                    last = last.filter(|_| exit.scatterings == 0);
+                    (ray, throughput) = (exit.ray, exit.throughput);
+                    exit.vertex
+                }
+            };
             let from = last.as_ref().map(|(point, pdf)| Scattered { point, pdf_solid_angle: *pdf });
 
             // Light found by scattering (or seen directly).

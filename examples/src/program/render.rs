@@ -30,12 +30,12 @@ use crate::samplers::{AnyFamily, SamplerName};
 /// The estimators.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum EstimatorName {
-    /// Path tracing: next event estimation and scattering, combined by the heuristic. With `direct` the only one that knows participating media.
+    /// Path tracing: next event estimation and scattering, combined by the heuristic. Knows participating media.
     #[default]
     Path,
     /// Light tracing; what it cannot find (specular next to the sensor) by path tracing.
     Light,
-    /// Emission and direct light only: path tracing with two segments.
+    /// Emission and direct light only: path tracing with two segments. Knows participating media.
     Direct,
     /// Ambient occlusion.
     Ao,

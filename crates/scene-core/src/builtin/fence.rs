@@ -21,10 +21,11 @@ const HEIGHT: f32 = 1.5;
 /// Distance between posts.
 const BAY: f32 = 1.8;
 
-/// A chain-link fence before a yard with a chequered ground, two walls and a few toys, under a clear sky with a low sun ([`sky_image`]), in metres.
+/// A chain-link fence before a yard with a chequered ground, two walls and a few toys, under a clear sky with a low
+/// sun ([`sky_image`]), in metres.
 ///
-/// The wires are 2.8 mm thick, a mesh is 60 mm wide; at the size of 640 x 480 pixels a pixel covers 5 to 11 mm of the fence, and the shadows of
-/// the wires on the ground are as thin. Made for anti-aliasing.
+/// The wires are 2.8 mm thick, a mesh is 60 mm wide; at the size of 640 x 480 pixels a pixel covers 5 to 11 mm of the
+/// fence, and the shadows of the wires on the ground are as thin. Made for anti-aliasing.
 ///
 /// It stands in for the fence of Keller, Dahm and Binder 2014, "Path Space Filtering", figure 7.
 pub fn fence() -> SceneDescription {
@@ -117,7 +118,8 @@ mod tests {
             wires += u32::from(hit < 0.005);
             all += 1;
         }
-        // Per square of side MESH / 2 a wire of length 2^(1/2) MESH / 2 and of width 2 WIRE, less where it is bent: up to 0.13.
+        // Per square of side MESH / 2 a wire of length 2^(1/2) MESH / 2 and of width 2 WIRE, less where it is bent:
+        // up to 0.13.
         let share = wires as f32 / all as f32;
         assert!((0.07..0.14).contains(&share), "{share}");
         // A pixel at the fence's closest and farthest visible point.

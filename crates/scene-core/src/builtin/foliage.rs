@@ -19,11 +19,11 @@ const LEAVES: u32 = 36;
 const ROOT: Vec3A = v(-0.05, 0.30, -0.10);
 const REACH: Vec3A = v(0.78, 1.02, 0.70);
 
-/// A shrub of 3240 diffuse leaves, 4 to 9 cm long, in a pot in the corner of a white and a terracotta wall, lit by a rectangular light and a weak sky, in
-/// metres.
+/// A shrub of 3240 diffuse leaves, 4 to 9 cm long, in a pot in the corner of a white and a terracotta wall, lit by a
+/// rectangular light and a weak sky, in metres.
 ///
-/// Hardly a point of the leaves sees the whole light, and no two neighbouring leaves face the same way; the walls send much of
-/// the light that they get into the shrub and back.
+/// Hardly a point of the leaves sees the whole light, and no two neighbouring leaves face the same way; the walls
+/// send much of the light that they get into the shrub and back.
 ///
 /// It stands in for the foliage of Keller, Dahm and Binder 2014, "Path Space Filtering", figure 6.
 pub fn foliage() -> SceneDescription {

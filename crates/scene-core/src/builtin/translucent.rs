@@ -12,11 +12,13 @@ use crate::medium::Medium;
 use crate::reference::{Light, SceneDescription, Shape};
 use crate::traits::Rgb;
 
-/// The blob of [`blob`](super::blob()) of a waxy material on a round pedestal, lit by a large rectangular light behind it, in metres: a rough
-/// dielectric, filled with a medium of which light crosses the fingers, and red light the body.
+/// The blob of [`blob`](super::blob()) of a waxy material on a round pedestal, lit by a large rectangular light
+/// behind it, in metres: a rough dielectric, filled with a medium of which light crosses the fingers, and red light
+/// the body.
 ///
-/// The mean free path is 25 mm, and 50 mm until the direction is forgotten; a part of `1/e` is left after 0.43 m of red, 0.21 m of green, 0.13 m of blue
-/// light. A weak sky fills the shadows. The boundary has a roughness of 0.3, so that paths that leave can be connected to the light.
+/// The mean free path is 25 mm, and 50 mm until the direction is forgotten; a part of `1/e` is left after 0.43 m of
+/// red, 0.21 m of green, 0.13 m of blue light. A weak sky fills the shadows. The boundary has a roughness of 0.3, so
+/// that paths that leave can be connected to the light.
 ///
 /// It stands in for the translucent statuette of Keller, Dahm and Binder 2014, "Path Space Filtering", figure 6.
 pub fn translucent_blob() -> SceneDescription {

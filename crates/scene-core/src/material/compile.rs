@@ -41,8 +41,8 @@ impl Material {
     ///
     /// # Errors
     /// As [`validate`](Self::validate); and if a transmissive material is inside a two-sided one, two different sides
-    /// have wrappers of their own (wrap the two-sided material instead), or a medium is inside anything but one smooth or rough
-    /// dielectric.
+    /// have wrappers of their own (wrap the two-sided material instead), or a medium is inside anything but one smooth
+    /// or rough dielectric.
     pub fn compile(self) -> Result<CompiledMaterial, MaterialError> {
         self.validate()?;
         Wrappers::default().flatten(self)

@@ -13,12 +13,12 @@ use crate::frame::Frame;
 /// p(cos) = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2))
 /// ```
 ///
-/// **Symbols.** `p`, in 1/sr, is the density by solid angle of the direction in which light goes on; `cos` that of the angle between the
-/// directions of travel before and after, so that `cos = 1` is straight on. `g` is the mean of `cos`: 0 is isotropic, positive scatters
-/// forwards, negative back.
+/// **Symbols.** `p`, in 1/sr, is the density by solid angle of the direction in which light goes on; `cos` that of
+/// the angle between the directions of travel before and after, so that `cos = 1` is straight on. `g` is the mean of
+/// `cos`: 0 is isotropic, positive scatters forwards, negative back.
 ///
-/// It integrates to one over the sphere, so that samples need no weight, and is symmetric in the two directions, so that both
-/// [modes of transport](crate::TransportMode) agree.
+/// It integrates to one over the sphere, so that samples need no weight, and is symmetric in the two directions, so
+/// that both [modes of transport](crate::TransportMode) agree.
 ///
 /// Source: Henyey and Greenstein 1941, "Diffuse radiation in the galaxy".
 ///
@@ -56,7 +56,8 @@ impl HenyeyGreenstein {
         self.g
     }
 
-    /// The value for the cosine of the angle between the directions of travel, in 1/sr; it is the [density](Self::pdf), too.
+    /// The value for the cosine of the angle between the directions of travel, in 1/sr; it is the
+    /// [density](Self::pdf), too.
     #[inline]
     pub fn eval(&self, cos: f32) -> f32 {
         // In f64: near straight on the base is the difference of numbers that are nearly equal.

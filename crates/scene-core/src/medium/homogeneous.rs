@@ -9,25 +9,27 @@ use crate::traits::Spectrum;
 /// dL/dx = -sigma_t L(x, w) + sigma_s integral over the sphere of p(w, w') L(x, w') dw',    sigma_t = sigma_a + sigma_s
 /// ```
 ///
-/// **Symbols.** `sigma_a`, `sigma_s`, `sigma_t`: coefficients of absorption, scattering and extinction per component, in 1/length: the
-/// share of light that is lost per length. `1 / sigma_t` is the mean free path, `sigma_s / sigma_t` the albedo. `p`: the
-/// [phase function](HenyeyGreenstein).
+/// **Symbols.** `sigma_a`, `sigma_s`, `sigma_t`: coefficients of absorption, scattering and extinction per component,
+/// in 1/length: the share of light that is lost per length. `1 / sigma_t` is the mean free path, `sigma_s / sigma_t`
+/// the albedo. `p`: the [phase function](HenyeyGreenstein).
 ///
 /// # Free flight
-/// A component's free flight ends at distance `t` with density `sigma_t exp(-sigma_t t)`. Where the components differ, one of them is
-/// chosen to sample the distance, with probability `q_i`, and all are weighed by the density of the mixture (single-sample multiple
-/// importance sampling with the balance heuristic):
+/// A component's free flight ends at distance `t` with density `sigma_t exp(-sigma_t t)`. Where the components
+/// differ, one of them is chosen to sample the distance, with probability `q_i`, and all are weighed by the density
+/// of the mixture (single-sample multiple importance sampling with the balance heuristic):
 ///
 /// ```text
 /// scatters at t:                sigma_s T(t) / sum_i q_i sigma_t,i T_i(t),      T(t) = exp(-sigma_t t)
 /// reaches a surface at d < t:         T(d) / sum_i q_i T_i(d)
 /// ```
 ///
-/// With `q_i` in proportion to the throughput ([`channels`](Self::channels)) the sum of the throughput's components stays what it was where a
-/// surface is reached, and is multiplied by a mean of the albedos where it scatters: weights are bounded by the number of components.
+/// With `q_i` in proportion to the throughput ([`channels`](Self::channels)) the sum of the throughput's components
+/// stays what it was where a surface is reached, and is multiplied by a mean of the albedos where it scatters:
+/// weights are bounded by the number of components.
 ///
-/// Unbiased. Sources: Chandrasekhar 1960, "Radiative Transfer"; Veach and Guibas 1995; Chiang, Kutz and Burley 2016, "Practical and
-/// Controllable Subsurface Scattering for Production Path Tracing", for probabilities in proportion to throughput.
+/// Unbiased. Sources: Chandrasekhar 1960, "Radiative Transfer"; Veach and Guibas 1995; Chiang, Kutz and Burley 2016,
+/// "Practical and Controllable Subsurface Scattering for Production Path Tracing", for probabilities in proportion to
+/// throughput.
 ///
 /// ```
 /// use scene_core::{Rgb, Spectrum, medium::Medium};
@@ -49,10 +51,12 @@ pub struct Medium<S> {
 }
 
 impl<S: Spectrum> Medium<S> {
-    /// With coefficients of absorption and of scattering, in 1/length, and the mean cosine `g` of Henyey and Greenstein's phase function.
+    /// With coefficients of absorption and of scattering, in 1/length, and the mean cosine `g` of Henyey and
+    /// Greenstein's phase function.
     ///
     /// # Errors
-    /// [`MediumError`] for coefficients that are negative or not finite, nor is their sum; and unless `g` lies in `(-1, 1)`.
+    /// [`MediumError`] for coefficients that are negative or not finite, nor is their sum; and unless `g` lies in
+    /// `(-1, 1)`.
     pub fn new(sigma_a: S, sigma_s: S, g: f32) -> Result<Self, MediumError> {
         for (name, coefficient) in [("sigma_a", sigma_a), ("sigma_s", sigma_s), ("sigma_t", sigma_a + sigma_s)] {
             for value in components(&coefficient) {
@@ -109,15 +113,16 @@ impl<S: Spectrum> Medium<S> {
         S::from_components(|i| (-depth(sigma_t.component(i), distance)).exp())
     }
 
-    /// Probabilities of the components to sample a distance by, in proportion to `throughput`; all the same if that is black.
+    /// Probabilities of the components to sample a distance by, in proportion to `throughput`; all the same if that
+    /// is black.
     #[inline]
     pub fn channels(&self, throughput: S) -> S {
         let total = total(&throughput);
         if total > 0.0 { throughput * (1.0 / total) } else { S::splat(1.0 / S::COMPONENTS as f32) }
     }
 
-    /// The distance of the next event, sampled by one component of `channels`, which the first number chooses. Infinite if that component's
-    /// light is never absorbed nor scattered.
+    /// The distance of the next event, sampled by one component of `channels`, which the first number chooses.
+    /// Infinite if that component's light is never absorbed nor scattered.
     #[inline]
     pub fn sample_distance(&self, channels: S, [mut choose, u]: [f32; 2]) -> f32 {
         let mut chosen = 0;
@@ -140,15 +145,16 @@ impl<S: Spectrum> Medium<S> {
         total(&(channels * self.sigma_t() * self.transmittance(distance)))
     }
 
-    /// The factor of the throughput for scattering at the sampled `distance`: `sigma_s T / sum_i q_i sigma_t,i T_i`. Zero where no component would
-    /// have sampled it.
+    /// The factor of the throughput for scattering at the sampled `distance`: `sigma_s T / sum_i q_i sigma_t,i T_i`.
+    /// Zero where no component would have sampled it.
     #[inline]
     pub fn scattering_weight(&self, channels: S, distance: f32) -> S {
         let transmitted = self.relative_transmittance(distance);
         quotient(self.sigma_s * transmitted, total(&(channels * self.sigma_t() * transmitted)))
     }
 
-    /// The factor of the throughput for a surface at `distance`, closer than the one that was sampled: `T / sum_i q_i T_i`.
+    /// The factor of the throughput for a surface at `distance`, closer than the one that was sampled:
+    /// `T / sum_i q_i T_i`.
     #[inline]
     pub fn passing_weight(&self, channels: S, distance: f32) -> S {
         let transmitted = self.relative_transmittance(distance);

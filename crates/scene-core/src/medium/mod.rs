@@ -1,7 +1,8 @@
 //! Participating media: what fills closed dielectric surfaces and absorbs and scatters light on its way through.
 //!
-//! A [`Medium`] is homogeneous and scatters by [`HenyeyGreenstein`]'s phase function. [`Vertex::medium`](crate::Vertex::medium)
-//! tells which one a ray enters, and [`Medium::walk`] follows it to the next surface.
+//! A [`Medium`] is homogeneous and scatters by [`HenyeyGreenstein`]'s phase function.
+//! [`Vertex::medium`](crate::Vertex::medium) tells which one a ray enters, and [`Medium::walk`] follows it to the
+//! next surface.
 
 mod error;
 mod henyey_greenstein;

@@ -32,17 +32,19 @@ impl<S: Spectrum> Medium<S> {
     /// Follows `ray`, which runs through this medium, to the next surface: free flight and scattering in turn.
     ///
     /// ```text
-    /// beta <- beta * (weight of free flight) / q      at each event;      the direction by the phase function, of weight one
+    /// beta <- beta * (weight of free flight) / q      at each event; directions by the phase function, of weight one
     /// ```
     ///
-    /// **Symbols.** `beta`: `throughput`, that of the path; the components sample distances in proportion to it. `q`: the probability of surviving
-    /// Russian roulette, which is played where the sum of `beta` has fallen below a quarter of what it was (`q = 1/2`), and from
-    /// scattering number 4096 on (`q = 1 - 1/4096`), which bounds the expected time in the densest medium. Nothing if the walk did not survive.
+    /// **Symbols.** `beta`: `throughput`, that of the path; the components sample distances in proportion to it. `q`:
+    /// the probability of surviving Russian roulette, which is played where the sum of `beta` has fallen below a
+    /// quarter of what it was (`q = 1/2`), and from scattering number 4096 on (`q = 1 - 1/4096`), which bounds the
+    /// expected time in the densest medium. Nothing if the walk did not survive.
     ///
-    /// **Assumes** that the medium's surface is closed. Where it is not, the medium ends at the scene's bounding sphere, and the walk without a
-    /// vertex. Light sources inside are found only by running into them; the caller must not look for them. A point that scatters within the
-    /// round-off of the surface may come to lie outside of it, with a probability of the order of 1e-7 sigma_t per unit of length; it finds the
-    /// surface from there, or the bounding sphere.
+    /// **Assumes** that the medium's surface is closed. Where it is not, the medium ends at the scene's bounding
+    /// sphere, and the walk without a vertex. Light sources inside are found only by running into them; the caller
+    /// must not look for them. A point that scatters within the round-off of the surface may come to lie outside of
+    /// it, with a probability of the order of 1e-7 sigma_t per unit of length; it finds the surface from there, or
+    /// the bounding sphere.
     ///
     /// **Unbiased.** A medium that only absorbs takes no numbers, and has no variance.
     ///
@@ -117,8 +119,8 @@ impl<S: Spectrum> Medium<S> {
     }
 }
 
-/// The way to the surface that was hit, or to the end of the medium at the scene's bounding sphere if that is closer than the event at
-/// `distance`; nothing if the event happens.
+/// The way to the surface that was hit, or to the end of the medium at the scene's bounding sphere if that is closer
+/// than the event at `distance`; nothing if the event happens.
 #[inline]
 fn passed<C: Scene>(scene: &C, ray: &Ray, distance: f32, hit: Option<&C::Vertex<'_>>) -> Option<f32> {
     if let Some(vertex) = hit {

@@ -25,8 +25,8 @@ impl Importer<'_> {
         interior
     }
 
-    /// `boundary` with the homogeneous medium `object` inside. Light crosses a `null` boundary straight on, as it does where
-    /// indices of refraction are equal.
+    /// `boundary` with the homogeneous medium `object` inside. Light crosses a `null` boundary straight on, as it
+    /// does where indices of refraction are equal.
     pub(super) fn filled(&mut self, boundary: Material, object: &Object) -> Result<Material> {
         let albedo = self.color(object, "albedo")?.unwrap_or(Rgb::splat(0.75));
         let sigma_t = self.color(object, "sigma_t")?.unwrap_or(Rgb::ONE) * object.float("scale")?.unwrap_or(1.0);

@@ -169,8 +169,8 @@ impl ReferenceScene {
         self.triangles
     }
 
-    /// Whether any surface encloses a participating medium. Estimators that do not ask [`Vertex::medium`](crate::Vertex::medium) take
-    /// it for clear.
+    /// Whether any surface encloses a participating medium. Estimators that do not ask
+    /// [`Vertex::medium`](crate::Vertex::medium) take it for clear.
     pub fn has_media(&self) -> bool {
         self.has_media
     }

@@ -48,8 +48,8 @@ pub trait Spectrum:
         *self == Self::ZERO
     }
 
-    /// How many components it has. Participating media attenuate each of them at its own rate, and so ask for them one by one.
-    /// The default is right for RGB; spectra of other components override it, with the next two.
+    /// How many components it has. Participating media attenuate each of them at its own rate, and so ask for them
+    /// one by one. The default is right for RGB; spectra of other components override it, with the next two.
     const COMPONENTS: usize = 3;
     /// Component number `index`, below [`COMPONENTS`](Self::COMPONENTS).
     #[inline]

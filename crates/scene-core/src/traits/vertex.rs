@@ -97,8 +97,9 @@ pub trait Vertex: Clone {
         None
     }
 
-    /// The medium that the ray which leaves in direction `wi` runs through, if that which arrived from `wo` ran through `current`. The boundary of a
-    /// medium knows what is on either side of it; any other surface changes nothing, which is the default.
+    /// The medium that the ray which leaves in direction `wi` runs through, if that which arrived from `wo` ran through
+    /// `current`. The boundary of a medium knows what is on either side of it; any other surface changes nothing, which
+    /// is the default.
     ///
     /// An estimator that knows media keeps this beside its ray and lets [`Medium::walk`] take the place of
     /// [`Scene::intersect`](super::Scene::intersect). Others see through media as through clear glass.

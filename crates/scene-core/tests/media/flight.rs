@@ -42,8 +42,8 @@ fn distances_follow_the_mixture() {
     run(SUITE.twin("free flight, mixture: uniform channels"), Rgb::splat(1.0 / 3.0)).expect_reject();
 }
 
-/// Estimates of what passes a layer of thickness 0.3, and of what scatters in it, in component `i`: distances sampled by `sampled`, weighed for
-/// `weighed`.
+/// Estimates of what passes a layer of thickness 0.3, and of what scatters in it, in component `i`: distances sampled
+/// by `sampled`, weighed for `weighed`.
 fn layer(check: &Check, i: usize, passes: bool, sampled: Rgb, weighed: Rgb) -> Moments {
     let medium = chromatic();
     let mut uniforms = check.uniforms();

@@ -1,4 +1,5 @@
-//! Balls and boxes in uniform light: what scatters without loss cannot be seen, what absorbs keeps Beer and Lambert's law.
+//! Balls and boxes in uniform light: what scatters without loss cannot be seen, what absorbs keeps Beer and Lambert's
+//! law.
 
 use estimator_checks::{Check, Moments, Truth, mean_is};
 use qmc_sampling::{Independent, SamplerFamily};

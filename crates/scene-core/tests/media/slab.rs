@@ -32,8 +32,8 @@ fn panes_of_tinted_glass_reflect_between_their_sides() {
 const THICKNESS: f64 = 1.3;
 const ALBEDO: f64 = 0.9;
 
-/// The shares of light at normal incidence that a layer of optical thickness `b` and extinction 1 reflects and transmits with exactly one
-/// scattering, by midpoints over the cosine `m`:
+/// The shares of light at normal incidence that a layer of optical thickness `b` and extinction 1 reflects and
+/// transmits with exactly one scattering, by midpoints over the cosine `m`:
 ///
 /// ```text
 /// r_1 = 2 pi a integral p(-m) (1 - exp(-b (1 + 1/m))) / (1 + 1/m) dm
@@ -99,8 +99,8 @@ fn the_h_function_has_its_tabulated_value() {
     assert!((h_function(0.0, 0.7) - 1.0).abs() < 1e-12);
 }
 
-/// A half-space that scatters isotropically reflects `1 - H(m) sqrt(1 - a)` of the light that arrives at the cosine `m` (Chandrasekhar,
-/// section 38).
+/// A half-space that scatters isotropically reflects `1 - H(m) sqrt(1 - a)` of the light that arrives at the cosine
+/// `m` (Chandrasekhar, section 38).
 #[test]
 fn half_spaces_reflect_as_chandrasekhar_says() {
     for (albedo, cos) in [(0.5, 1.0f32), (0.9, 0.3), (0.95, 1.0)] {
