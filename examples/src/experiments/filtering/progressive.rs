@@ -5,24 +5,28 @@ use crate::experiments::{Context, Setup};
 use crate::filters::{FilterSettings, PathFilterName};
 use crate::program::{Failure, RenderSettings};
 
+/// Side of the square of pixels as large as the disk: a little more than the program's.
+const RADIUS: f32 = 4.0;
+
 /// On the builtin interior, and on the living room if there is one: 1, 4, 16, .. samples per pixel, by range search and by hash. The last number is that of the paper's figure in the quick form.
 pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failure> {
     let mut report = context.report();
     let size = context.effort([120, 90], [320, 240]);
     let mut setups = vec![(Setup::builtin(context, "interior", size)?, context.effort(4, 8))];
-    if let Some(setup) = Setup::asset(context, "living-room/scene_mi3.xml", context.effort([96, 54], [320, 180]))? {
+    if let Some(setup) = Setup::asset(context, "living-room/scene_mi3.xml", context.effort([128, 72], [320, 180]))? {
         setups.push((setup, context.effort(2, 6)));
     }
     for (setup, trials) in &setups {
         let reference = setup.reference(context, context.effort(768, 4096))?;
         for &samples in context.effort(&[1, 4, 16][..], &[1, 4, 16, 64, 256]) {
+            let usual = FilterSettings { filter_radius: RADIUS, ..FilterSettings::default() };
             let hash = RenderSettings {
                 path_filter: Some(PathFilterName::PsfHash),
-                ..super::filtered(&setup.settings, FilterSettings::default())
+                ..super::filtered(&setup.settings, usual.clone())
             };
             let mut variants = [
                 Variant::new("input", setup.settings.clone()),
-                Variant::filtered("psf", setup, FilterSettings::default()),
+                Variant::filtered("psf", setup, usual),
                 Variant::new("psf-hash", hash),
             ];
             run(context, setup, &reference, &mut variants, samples, *trials)?;
