@@ -49,6 +49,9 @@ pub enum FilterError {
         "--filter psf and psf-hash work with path, direct, ao, robust-igi (without --caustics), instant-radiosity and photon-map"
     )]
     Estimator,
+    /// A setting that this filter does not know.
+    #[error("{0}")]
+    Setting(&'static str),
     /// An image that cannot be continued from there.
     #[error("the image was stopped after {done} samples per pixel, which is no multiple of --filter-batch {batch}")]
     Continue {
@@ -81,7 +84,7 @@ pub struct FilterSettings {
     /// Memory for a batch, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 1024)]
     pub filter_memory: u64,
-    /// Least cosine between normals that are alike; -1 is any.
+    /// Least cosine between normals that are alike; -1 is any. For psf-hash anything else means that normals round to the same half.
     #[arg(long, value_name = "COSINE", default_value_t = 0.95, allow_negative_numbers = true)]
     pub filter_normals: f32,
     /// Largest difference between colours that are alike [default: any, since colours are taken out of the average].
@@ -181,6 +184,14 @@ impl FilterSettings {
     /// If a setting is out of range.
     pub fn filter(&self, name: PathFilterName, sensor: &impl Sensor) -> Result<AnyFilter, FilterError> {
         let (radius, alike) = (self.radius(sensor)?, self.alike()?);
+        if self.filter_extra > 0 && self.filter_hit_distance.is_some() {
+            return Err(FilterError::Setting(
+                "--filter-extra samples have no ray for --filter-hit-distance to compare",
+            ));
+        }
+        if name == PathFilterName::PsfHash && (alike.view.is_some() || alike.hit_distance.is_some()) {
+            return Err(FilterError::Setting("--filter-view and --filter-hit-distance are for psf, not for psf-hash"));
+        }
         let modulation = match self.filter_as_stored {
             true => AnyModulation::AsStored,
             false => AnyModulation::Demodulated(Demodulated::default()),
@@ -197,6 +208,7 @@ impl FilterSettings {
                 JitteredHash::new(radius)
                     .key(AlikeKey { albedo: self.filter_albedo.is_some(), visibility: self.filter_visibility })
                     .modulation(modulation)
+                    .normal_steps(if alike.normals.is_some() { 2 } else { 0 })
                     .iterations(self.filter_iterations),
             ),
         })

@@ -90,8 +90,8 @@ impl Batches {
         if most == 0 {
             return Err(BatchError::Memory { bytes, bytes_per_vertex });
         }
-        let exponent = most.checked_ilog(u64::from(base.max(2))).unwrap_or(0).min(62);
-        Self::new(base, exponent)
+        let most = most.min(u64::MAX / 2);
+        Self::new(base, most.checked_ilog(u64::from(base.max(2))).unwrap_or(0))
     }
 
     /// The same batches, from one that begins with path number `start`.
@@ -118,8 +118,9 @@ impl Batches {
 
     /// The next batch.
     pub fn next_batch(&mut self) -> Batch {
-        let batch = Batch { start: self.next_start, len: self.len, number: self.next_start / self.len + 1 };
-        self.next_start += self.len;
+        let batch =
+            Batch { start: self.next_start, len: self.len, number: (self.next_start / self.len).saturating_add(1) };
+        self.next_start = self.next_start.saturating_add(self.len);
         batch
     }
 }
@@ -147,9 +148,10 @@ impl SwitchOff {
         Self { threshold, off: false }
     }
 
-    /// Looks at a batch.
+    /// Looks at a batch. One without vertices says nothing.
     pub fn observe<C>(&mut self, averages: &Averages<C>) {
-        self.off |= averages.max_count() <= self.threshold;
+        let count = averages.max_count();
+        self.off |= count > 0 && count <= self.threshold;
     }
 
     /// Whether the filter is off.
@@ -174,7 +176,9 @@ mod tests {
         assert_eq!(Batches::within_memory(2, 1000, 10).unwrap().len_of_batch(), 64);
         assert_eq!(Batches::within_memory(10, 1000, 10).unwrap().len_of_batch(), 100);
         assert_eq!(Batches::within_memory(2, 10, 10).unwrap().len_of_batch(), 1);
-        assert!(Batches::within_memory(2, u64::MAX, 0).is_ok());
+        assert!(Batches::within_memory(2, u64::MAX, 0).is_ok() && Batches::within_memory(3, u64::MAX, 1).is_ok());
+        let mut last = Batches::new(2, 0).unwrap().resume(u64::MAX - 1).unwrap();
+        assert_eq!([(); 3].map(|()| last.next_batch().start), [u64::MAX - 1, u64::MAX, u64::MAX]);
     }
 
     #[test]

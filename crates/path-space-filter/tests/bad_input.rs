@@ -72,6 +72,13 @@ fn damaged_vertices_keep_to_themselves() {
         }
         check(&JitteredHash::new(radius), &format!("{radius:?}, hash"));
         check(&JitteredHash::new(radius).modulation(Demodulated::default()).iterations(3), "hash, demodulated");
+        // An index of the caller's knows nothing of contributions.
+        let all = damaged();
+        let index = range_search::KdTree::build(&all, |vertex| vertex.position).unwrap();
+        let found = PathSpaceFilter::new(radius).average_with(&index, &all, 1);
+        assert!(
+            found.values().iter().enumerate().all(|(i, c)| [30, 40].contains(&i) || c.iter().all(|c| c.is_finite()))
+        );
         let screen = Screen::new(16, 16, 20).unwrap();
         let found = PathSpaceFilter::new(radius).average_on_screen(&screen, &damaged(), 1);
         assert!(

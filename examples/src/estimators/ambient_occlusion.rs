@@ -34,10 +34,11 @@ impl CameraEstimator for AmbientOcclusion {
         observer.vertex(1, &vertex, all);
         let occluder = scene.intersect(&self.occlusion_ray(&vertex, sampler));
         let value = if occluder.is_some() { S::Spectrum::ZERO } else { all };
-        if let Some(occluder) = &occluder {
-            observer.vertex(2, occluder, all);
-        }
         observer.contribution(1, Found::Connection { light: 0 }, value);
+        if let Some(occluder) = &occluder {
+            // Nothing of it reaches the camera.
+            observer.vertex(2, occluder, S::Spectrum::ZERO);
+        }
         (value, Some(FirstHit::new(&ray, &vertex)))
     }
 

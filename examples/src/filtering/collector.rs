@@ -119,7 +119,7 @@ impl<X: Vertex> Observer<X> for Collector {
             collected.vertex.hit_distance = step;
         }
         self.throughput = throughput.to_rgb();
-        if self.left > 0 && self.selection.selects(vertex) {
+        if self.left > 0 && !throughput.is_black() && self.selection.selects(vertex) {
             self.select(length, vertex);
         }
     }
@@ -139,5 +139,89 @@ impl<X: Vertex> Observer<X> for Collector {
     fn contribution(&mut self, eye: u32, found: Found, value: X::Spectrum) {
         let (target, value) = (self.target(eye, found), value.to_rgb());
         (0..3).for_each(|k| target[k] += value[k]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use scene_core::{ReferenceScene, Rgb, Scene, TransportMode, builtin};
+
+    use super::*;
+
+    type V<'s> = <ReferenceScene as Scene>::Vertex<'s>;
+
+    /// A collector for so many vertices, and events at vertices of the floor of the Cornell box, told by hand.
+    fn collect(vertices: u32, tell: impl FnOnce(&mut Collector, &V<'_>)) -> ([f32; 3], Vec<Collected>) {
+        let scene = ReferenceScene::new(builtin::cornell_box()).unwrap();
+        let ray = Ray::new(Vec3A::new(0.28, 0.3, 0.1), Vec3A::NEG_Y);
+        let vertex = scene.intersect(&ray).unwrap();
+        let mut collector = Collector::new(Selection::new(0.05, vertices).unwrap(), &ray);
+        tell(&mut collector, &vertex);
+        let (unfiltered, collected) = collector.finish(2.0);
+        (unfiltered, collected.collect())
+    }
+
+    fn found(collector: &mut Collector, eye: u32, what: Found, value: f32) {
+        Observer::<V<'_>>::contribution(collector, eye, what, Rgb::splat(value));
+    }
+
+    #[test]
+    fn contributions_belong_to_the_vertex_where_they_arrive() {
+        let (unfiltered, collected) = collect(1, |collector, vertex| {
+            collector.vertex(1, vertex, Rgb::splat(0.5));
+            found(collector, 1, Found::Hit, 100.0); // what it emits itself
+            found(collector, 1, Found::Photons, 10.0); // a density estimate there
+            found(collector, 1, Found::Connection { light: 0 }, 1.0);
+            collector.vertex(2, vertex, Rgb::splat(0.25));
+            found(collector, 2, Found::Hit, 2.0); // light that scattering found
+            found(collector, 2, Found::Photons, 4.0); // a density estimate further on is a contribution like any other
+            found(collector, 3, Found::Hit, 8.0); // the surroundings
+        });
+        assert_eq!(unfiltered, [220.0; 3]);
+        assert_eq!(collected.len(), 1);
+        assert_eq!((collected[0].attenuation, collected[0].vertex.contribution), ([1.0; 3], [30.0; 3]));
+        assert!((collected[0].vertex.path_length - 0.3).abs() < 1e-6 && collected[0].vertex.hit_distance == 0.0);
+    }
+
+    #[test]
+    fn of_two_vertices_each_has_its_own() {
+        let (unfiltered, collected) = collect(2, |collector, vertex| {
+            collector.vertex(1, vertex, Rgb::splat(1.0));
+            found(collector, 1, Found::Connections, 1.0);
+            collector.vertex(2, vertex, Rgb::splat(0.5));
+            found(collector, 2, Found::Hit, 2.0); // arrives at the first one
+            found(collector, 2, Found::Connections, 4.0);
+            found(collector, 3, Found::Hit, 8.0); // arrives at the second one
+        });
+        assert_eq!(unfiltered, [0.0; 3]);
+        let contributions: Vec<_> = collected.iter().map(|found| found.vertex.contribution[0]).collect();
+        assert_eq!(contributions, [3.0, 24.0]);
+    }
+
+    #[test]
+    fn beyond_a_sharp_bounce_the_next_vertex_takes_over() {
+        let (unfiltered, collected) = collect(1, |collector, vertex| {
+            collector.vertex(1, vertex, Rgb::splat(1.0));
+            found(collector, 1, Found::Connections, 1.0);
+            let sample = vertex.sample([0.5; 3], TransportMode::Radiance).unwrap();
+            collector.scattered(1, vertex, &ScatterSample { is_specular: true, ..sample });
+            found(collector, 2, Found::Hit, 32.0); // seen in the mirror
+            collector.vertex(2, vertex, Rgb::splat(0.5));
+            found(collector, 2, Found::Hit, 64.0); // so is what the next one emits
+            found(collector, 2, Found::Connections, 2.0);
+        });
+        assert_eq!(unfiltered, [192.0; 3]);
+        let contributions: Vec<_> = collected.iter().map(|found| found.vertex.contribution[0]).collect();
+        assert_eq!(contributions, [1.0, 4.0]);
+    }
+
+    #[test]
+    fn black_vertices_are_nobodys() {
+        let (unfiltered, collected) = collect(2, |collector, vertex| {
+            collector.vertex(1, vertex, Rgb::splat(1.0));
+            found(collector, 1, Found::Connections, 1.0);
+            collector.vertex(2, vertex, Rgb::ZERO);
+        });
+        assert_eq!((unfiltered, collected.len()), ([0.0; 3], 1));
     }
 }

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use scene_core::film::{Film, FilmError, Pixel};
 use scene_core::{RayCounts, Scene};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::traced::Tracing;
 use super::{FilterVertex, Observable, Traced};
@@ -18,7 +19,8 @@ use crate::render::{CameraPass, PassContext, PassCounts};
 /// Each batch takes the same number of samples of every pixel. With a sequence that runs through the whole image (`global-sobol`) and an image whose sides are powers of its
 /// base, that is a contiguous batch of `b^m` points, as the paper has it.
 ///
-/// **Consistent**, like the filter. The image's variance layer takes samples for independent, which filtered ones are not: it is far too small.
+/// **Consistent**, like the filter. With extra samples pixels prefer what can be answered (the sky to the wire before it) while some queries are left without an answer; after the first batch with
+/// more than 5 % of them no more are taken, so that this vanishes as well. The image's variance layer takes samples for independent, which filtered ones are not: it is far too small.
 ///
 /// **Cost.** The estimator's, the filter's, and memory for the paths of a batch: [`samples_in_memory`].
 #[derive(Debug)]
@@ -37,7 +39,12 @@ pub struct Filtered<'a, E, P> {
     pub max_depth: u32,
     /// Off as soon as nothing is averaged any more.
     pub switch: Mutex<SwitchOff>,
+    /// Whether extra samples are still taken: not once a batch left too many without an answer.
+    pub extras: AtomicBool,
 }
+
+/// The share of extra samples without an answer after which no more are taken.
+const MOST_UNANSWERED: f64 = 0.05;
 
 /// Bytes that a batch takes per path: path, vertices and averages.
 fn bytes_per_path(vertices: u32, filter: &impl PathFilter<FilterVertex>) -> u64 {
@@ -45,9 +52,10 @@ fn bytes_per_path(vertices: u32, filter: &impl PathFilter<FilterVertex>) -> u64 
     (size_of::<super::Path>() + vertices as usize * vertex) as u64
 }
 
-/// Samples per pixel of a batch that fits into so many bytes; one at least.
+/// Samples per pixel of a batch that fits into so many bytes, a power of two; one at least.
 pub fn samples_in_memory(bytes: u64, pixels: u64, vertices: u32, filter: &impl PathFilter<FilterVertex>) -> u64 {
-    (bytes / bytes_per_path(vertices, filter) / pixels.max(1)).max(1)
+    let most = (bytes / bytes_per_path(vertices, filter) / pixels.max(1)).max(1);
+    1 << most.ilog2()
 }
 
 impl<'a, E: Observable, P: PathFilter<FilterVertex> + Sync> Filtered<'a, E, P> {
@@ -61,6 +69,7 @@ impl<'a, E: Observable, P: PathFilter<FilterVertex> + Sync> Filtered<'a, E, P> {
             extra: 0,
             max_depth: u32::MAX,
             switch: Mutex::new(SwitchOff::new(1)),
+            extras: AtomicBool::new(true),
         }
     }
 
@@ -98,13 +107,19 @@ impl<'a, E: Observable, P: PathFilter<FilterVertex> + Sync> Filtered<'a, E, P> {
     ) -> RayCounts {
         let (size, number) = ([film.width(), film.height()], samples.start / self.batch + 1);
         let mut rays = RayCounts::default();
+        let (mut asked, mut answered) = (0, 0);
         for index in samples {
             let queries = self.tracing.queries(context, size, index, self.extra, self.max_depth);
             rays += queries.rays;
             let means = self.filter.average_at(&queries.vertices, &traced.vertices, number);
+            asked += queries.pixels.len() + queries.unanswered;
             for (pixel, radiance) in queries.answered(&means) {
+                answered += 1;
                 film.pixel_mut(pixel as u32 % size[0], pixel as u32 / size[0]).add(radiance);
             }
+        }
+        if f64::from(asked as u32 - answered) > MOST_UNANSWERED * asked as f64 {
+            self.extras.store(false, Ordering::Relaxed);
         }
         rays
     }
@@ -130,7 +145,7 @@ impl<E: Observable, P: PathFilter<FilterVertex> + Sync> CameraPass for Filtered<
             let (radiances, filtered) = self.radiances(&traced, first / self.batch + 1);
             add_to_film(film, &traced, &radiances);
             counts.rays += traced.counts.rays;
-            if filtered && self.extra > 0 {
+            if filtered && self.extra > 0 && self.extras.load(Ordering::Relaxed) {
                 counts.rays += self.add_queries(context, film, &traced, batch);
             }
         }

@@ -33,7 +33,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Vertices of at least this roughness, and so many on a path at most.
+    /// Vertices of at least this roughness, and so many on a path; after a sharp bounce at one of them there may be another one in its place.
     ///
     /// # Errors
     /// If the roughness does not lie in [0, 0.5], or there is no vertex.

@@ -82,6 +82,8 @@ pub struct Queries {
     pub attenuations: Vec<Option<[f32; 3]>>,
     /// Those vertices, in the same order.
     pub vertices: Vec<FilterVertex>,
+    /// Number of those that no average answers, and that are not among these.
+    pub unanswered: usize,
     /// Rays traced.
     pub rays: RayCounts,
 }
@@ -92,6 +94,7 @@ impl Queries {
         self.unfiltered.append(&mut other.unfiltered);
         self.attenuations.append(&mut other.attenuations);
         self.vertices.append(&mut other.vertices);
+        self.unanswered += other.unanswered;
         self.rays += other.rays;
     }
 
@@ -156,6 +159,7 @@ impl<E: Observable> Tracing<'_, E> {
                 let (mut sampler, ray) = context.extra_ray(&scene, place, index, number);
                 let mut collector = Collector::new(self.selection, &ray.ray);
                 if !look(&scene, ray.ray, max_depth, &mut sampler, self.selection, &mut collector) {
+                    queries.unanswered += 1;
                     continue;
                 }
                 let (unfiltered, mut vertices) = collector.finish(ray.weight);
@@ -166,6 +170,7 @@ impl<E: Observable> Tracing<'_, E> {
                 queries.vertices.extend(found.map(|found| FilterVertex {
                     pixel: place,
                     time: self.time,
+                    visibility: if self.point_lights { visibility(&scene, &found.vertex) } else { 0 },
                     ..found.vertex
                 }));
             }

@@ -45,11 +45,13 @@ pub fn render_views<S: Scene + Sync, F: SamplerFamily, E: Observable>(
     for number in batches {
         // The vertices of all views.
         let mut all = Vec::new();
-        for (view, film) in views.iter().zip(&films) {
+        for (number_of_view, (view, film)) in (0..).zip(views.iter().zip(&films)) {
             let context = PassContext { scene: view.scene, samplers, filter: Filter::BOX };
             let tracing = Tracing { estimator: view.estimator, selection, point_lights: false, time: view.time };
             let mut traced = Traced::default();
             for index in number * batch..(number + 1) * batch {
+                // Numbers of its own for each view: two that see the same are two samples.
+                let index = index * views.len() as u64 + number_of_view;
                 traced.append(tracing.image(&context, [film.width(), film.height()], index));
             }
             all.push(traced);

@@ -83,9 +83,9 @@ pub struct RenderArguments {
     /// How the emitter for next event estimation is chosen.
     #[arg(long, value_enum, default_value_t)]
     pub lights: LightSelection,
-    /// Where the random numbers come from.
-    #[arg(long, value_enum, default_value_t)]
-    pub sampler: SamplerName,
+    /// Where the random numbers come from [default: sobol; global-sobol with a path space filter].
+    #[arg(long, value_enum)]
+    pub sampler: Option<SamplerName>,
     /// Samples per pixel [default: what the scene asks for, or 64].
     #[arg(long, conflicts_with = "time", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
     pub spp: Option<u64>,

@@ -162,6 +162,11 @@ impl RenderSettings {
         applies && self.lights == LightSelection::Photons && self.resampling.direct == DirectName::Nee
     }
 
+    /// The longest path as it is written down: -1 is unlimited.
+    pub(super) fn max_depth_text(&self) -> String {
+        if self.max_depth == u32::MAX { "-1".to_owned() } else { self.max_depth.to_string() }
+    }
+
     /// The settings of resampling; `--lights ris` asks for it too.
     pub(super) fn direct_settings(&self) -> ResamplingSettings {
         let mut settings = self.resampling.clone();
@@ -394,12 +399,15 @@ fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderS
         ("lights", name(settings.lights.to_possible_value())),
         ("sampler", name(settings.sampler.to_possible_value())),
         ("seed", settings.seed.to_string()),
-        ("maxDepth", if settings.max_depth == u32::MAX { "-1".to_owned() } else { settings.max_depth.to_string() }),
+        ("maxDepth", settings.max_depth_text()),
         ("renderer", concat!("Lichtwerk ", env!("CARGO_PKG_VERSION")).to_owned()),
     ];
     for (key, text) in texts {
         // Attributes are a service: one that does not fit is no reason to lose the image.
         let _ = image.set_attribute(key, text);
+    }
+    if let Some(name) = settings.path_filter {
+        let _ = image.set_attribute(filtered::PATH_FILTER, filtered::describe(name, &settings.filtering));
     }
     let _ = image.set_attribute(scene_core::film::SAMPLES_PER_PIXEL, rendering.samples);
 }
@@ -439,15 +447,16 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         check_writable(path)?;
     }
 
-    // What was rendered before.
-    let earlier = arguments.continued.as_deref().map(|path| filtered::earlier(path, &scene, arguments)).transpose()?;
-
     // Render.
-    let settings = RenderSettings {
+    let mut settings = RenderSettings {
         estimator: arguments.estimator,
         heuristic: arguments.heuristic,
         lights: arguments.lights,
-        sampler: arguments.sampler,
+        // Batches of the filter are contiguous in a sequence through the whole image.
+        sampler: arguments.sampler.unwrap_or(match path_filter {
+            Some(_) => SamplerName::GlobalSobol,
+            None => SamplerName::default(),
+        }),
         budget: arguments.time.map_or(Budget::Samples(samples), Budget::Seconds),
         seed: arguments.seed,
         threads: arguments.threads,
@@ -456,7 +465,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         filter,
         path_filter,
         filtering: arguments.filtering.clone(),
-        done: earlier.as_ref().map_or(0, |(done, _)| *done),
+        done: 0,
         light_paths: arguments.light_paths.clone(),
         resampling: arguments.resampling.clone(),
         light_photons: arguments.light_photons.clone(),
@@ -467,6 +476,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         report(
             "warning: without shadow rays for other lights, light that the photons missed is lost (--other-rays 1 finds it)",
         );
+    }
+    let earlier = arguments.continued.as_deref().map(|path| filtered::earlier(path, &scene, &settings)).transpose()?;
+    if let Some((done, _)) = &earlier {
+        settings.done = *done;
     }
     let mut watch = Watch::new(arguments, &settings, &name);
     let (mut image, rendering) = render_to_image(&scene, &settings, |pass| watch.observe(pass))?;

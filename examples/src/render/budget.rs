@@ -47,7 +47,7 @@ impl Schedule {
                 match self.done {
                     0 => self.batch,
                     // Stop at the pass that comes closest to the limit.
-                    _ if remaining < 0.5 => 0,
+                    _ if remaining < 0.5 * self.batch as f64 => 0,
                     _ => wanted.min(remaining.round().max(1.0) as u64).next_multiple_of(self.batch),
                 }
             }

@@ -17,23 +17,22 @@ const SMALLEST_PART: usize = 32;
 const PART: usize = 1 << 12;
 
 /// A grid over all vertices, for those whose radius is about its cell size.
-pub(super) struct Level<F> {
+struct Level<F> {
     grid: HashGrid,
     /// In the order of slots; negative where the vertex asks another level.
     radii: Vec<f32>,
     features: Vec<F>,
 }
 
-/// Builds them, coarsest first.
-pub(super) fn levels<F: Clone + Send + Sync, C>(prepared: &Prepared<F, C>) -> Vec<Level<F>> {
+/// Builds them one after the other, coarsest first: only one of them takes memory at a time.
+fn levels<F: Clone + Send + Sync, C>(prepared: &Prepared<F, C>) -> impl Iterator<Item = Level<F>> {
     let (level_of, sizes) = divide(&prepared.radii);
-    let build = |(number, &size): (usize, &f32)| {
+    sizes.into_iter().enumerate().filter_map(move |(number, size)| {
         let grid = build(&prepared.positions, size)?;
         let radii = grid.order().map(|id| if level_of[id] == number { prepared.radii[id] } else { -1.0 }).collect();
         let features = grid.reorder(&prepared.features);
         Some(Level { grid, radii, features })
-    };
-    sizes.iter().enumerate().filter_map(build).collect()
+    })
 }
 
 /// Nothing if there are more points than ids.
@@ -83,11 +82,7 @@ pub(super) fn divide(radii: &[f32]) -> (Vec<usize>, Vec<f32>) {
 }
 
 /// The average of each vertex.
-pub(super) fn averages<V, C, S, K>(
-    levels: &[Level<S::Features>],
-    prepared: &Prepared<S::Features, C>,
-    rule: &Rule<'_, S, K>,
-) -> Iterated<C>
+pub(super) fn averages<V, C, S, K>(prepared: &Prepared<S::Features, C>, rule: &Rule<'_, S, K>) -> Iterated<C>
 where
     C: Contribution + Send + Sync,
     S: Similarity<V> + Sync,
@@ -95,7 +90,7 @@ where
     K: Kernel + Sync,
 {
     let (mut means, mut counts) = (prepared.values.clone(), vec![1; prepared.values.len()]);
-    for level in levels {
+    for level in levels(prepared) {
         let values = level.grid.reorder(&prepared.values);
         let query = level.grid.self_query(|slot: usize| level.radii[slot]);
         let of_part = |part: usize| {

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use range_search::{BruteForce, HashGrid, RangeIndex};
 
 use super::PathSpaceFilter;
-use super::grid::{self, Level};
+use super::grid;
 use super::mean::{Counted, Mean, Rule, over_squared, weight, weight_of_center};
 use super::prepared::{Iterated, Prepared};
 use crate::{Contribution, Kernel, Modulation, PathVertex, Similarity, parallel};
@@ -30,8 +30,9 @@ pub enum Search {
 }
 
 /// What a search has built.
-pub(super) enum Searched<F> {
-    Grid(Vec<Level<F>>),
+pub(super) enum Searched {
+    /// Built when they are asked, and not kept.
+    Grid,
     DivideAndConquer,
     #[cfg(feature = "kiddo")]
     KdTree(Box<range_search::KdTree>),
@@ -42,11 +43,11 @@ pub(super) enum Searched<F> {
     Nothing,
 }
 
-impl<F: Clone + Send + Sync> Searched<F> {
-    pub(super) fn new<C>(search: Search, prepared: &Prepared<F, C>) -> Self {
+impl Searched {
+    pub(super) fn new<F, C>(search: Search, prepared: &Prepared<F, C>) -> Self {
         let positions = &prepared.positions;
         let searched = match search {
-            Search::Grid => Some(Self::Grid(grid::levels(prepared))),
+            Search::Grid => Some(Self::Grid),
             Search::DivideAndConquer => Some(Self::DivideAndConquer),
             #[cfg(feature = "kiddo")]
             Search::KdTree => range_search::KdTree::build(positions, |x| *x).ok().map(Box::new).map(Self::KdTree),
@@ -57,14 +58,15 @@ impl<F: Clone + Send + Sync> Searched<F> {
         searched.unwrap_or(Self::Nothing)
     }
 
-    pub(super) fn averages<V, C, S, K>(&self, prepared: &Prepared<F, C>, rule: &Rule<'_, S, K>) -> Iterated<C>
+    pub(super) fn averages<V, C, S, K>(&self, prepared: &Prepared<S::Features, C>, rule: &Rule<'_, S, K>) -> Iterated<C>
     where
         C: Contribution + Send + Sync,
-        S: Similarity<V, Features = F> + Sync,
+        S: Similarity<V> + Sync,
+        S::Features: Clone + Send + Sync,
         K: Kernel + Sync,
     {
         match self {
-            Self::Grid(levels) => grid::averages(levels, prepared, rule),
+            Self::Grid => grid::averages(prepared, rule),
             Self::DivideAndConquer => divide_and_conquer(prepared, rule),
             #[cfg(feature = "kiddo")]
             Self::KdTree(tree) => with_index(&**tree, prepared, rule),
@@ -107,6 +109,10 @@ where
         let (features, over) = (&prepared.features[i], over_squared(prepared.radii[i]));
         let mut mean = Mean::new();
         index.find(prepared.positions[i], prepared.radii[i], &mut |j, distance_squared| {
+            // An index of the caller's may hold what takes no part.
+            if !prepared.takes_part(j) {
+                return;
+            }
             let mut weight = weight(rule, features, &prepared.features[j], distance_squared * over);
             if i == j {
                 weight = weight_of_center(weight);

@@ -81,7 +81,7 @@ impl Quantizer {
         let (level, edge) = if self.radius.is_absolute() {
             (0, radius * self.factor)
         } else {
-            let level = radius.log2().round();
+            let level = radius.log2().round().clamp(-127.0, 127.0);
             (level as i32 as u32 & 0xff, level.exp2() * self.factor)
         };
         let place = self.jittered(vertex.position(), vertex.normal(), edge, index).map(|x| (x / edge).floor());

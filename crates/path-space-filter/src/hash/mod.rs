@@ -19,7 +19,7 @@ use key::{Key, Quantizer};
 /// key = (floor((x + s xi) / s), level of s, rounded normal, key of the caller's)
 /// ```
 /// **Symbols.** `s`: edge length of the cells, `sqrt(pi) r(n)`, so that a cell cuts as much off a plane as the ball of the [`Radius`] does; it grows with the length of the camera path in
-/// powers of two. `xi`: uniform in `[-1/2, 1/2)^2` in the tangent plane, another one for each vertex and batch. It turns the edges of cells into noise, which pixels average.
+/// powers of two. `xi`: uniform in `[-1/2, 1/2)^2` in the tangent plane, another one for each vertex and batch (for each query of a call). It turns the edges of cells into noise, which pixels average.
 ///
 /// **Assumptions.** As equation 1's; what would be a similarity weight is part of the key.
 ///
@@ -121,7 +121,8 @@ where
             parallel::map_range(vertices.len(), |i| takes_part(&vertices[i]) && values[i].is_finite());
         for iteration in 0..self.iterations {
             let keys = self.keys(vertices, &values, batch, iteration);
-            counts = cells::averages(&keys, &mut values);
+            let more = cells::averages(&keys, &mut values);
+            counts.iter_mut().zip(more).for_each(|(count, more)| *count = more.max(*count));
         }
         let finish = |i: usize| match counts[i] {
             0 | 1 => vertices[i].contribution(),
