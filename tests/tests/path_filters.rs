@@ -17,7 +17,7 @@ use scene_core::film::LayeredImage;
 use scene_core::glam::Vec3A;
 use scene_core::{Ray, ReferenceScene, SceneDescription, builtin};
 
-static SUITE: Suite = Suite::with_share("workspace filters", 12, 2e-8);
+static SUITE: Suite = Suite::with_share("workspace filters", 10, 7e-8);
 
 fn scene(description: SceneDescription, [width, height]: [u32; 2]) -> ReferenceScene {
     ReferenceScene::new(resized(description, width, height)).unwrap()
@@ -168,7 +168,7 @@ fn views_share_their_vertices() {
 fn textures_are_baked_in_the_order_of_their_rays() {
     let scene = scene(builtin::cornell_box(), [4, 4]);
     let ao = AmbientOcclusion { distance: 0.1 };
-    // Along the floor towards a wall.
+    // Along the floor, from a wall to the short box.
     let texel = |i: u16| Ray::new(Vec3A::new(0.005 + 0.01 * f32::from(i), 0.05, 0.05), Vec3A::NEG_Y);
     let rays: Vec<Ray> = (0..24).map(texel).collect();
     let bake_with = |length: f32, samples| {
@@ -176,13 +176,13 @@ fn textures_are_baked_in_the_order_of_their_rays() {
         bake(&scene, &rays, &ao, &Independent::new(1), &filter, Selection::default(), 0..1, samples)
     };
     let truth = bake_with(0.0, 4096);
-    assert!(truth[0][0] < 0.7 && truth[12][0] > 0.95, "{truth:?}");
+    assert!(truth[0][0] < 0.6 && truth[9][0] > 0.85 && truth[16][0] < 0.75, "{truth:?}");
     let error = |texture: &[[f32; 3]]| texture.iter().zip(&truth).map(|(a, b)| (a[0] - b[0]).powi(2)).sum::<f32>();
     assert!(error(&bake_with(0.02, 8)) < error(&bake_with(0.0, 8)));
 }
 
-/// Numbers of samples per pixel, one per batch.
-const SAMPLES: [u64; 12] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
+/// Numbers of samples per pixel, one per batch: from where the noise of edges, which no filter changes, is below the blur of a large radius.
+const SAMPLES: [u64; 13] = [8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256];
 
 /// Errors by number of batches; no two points share samples.
 fn errors(
@@ -194,7 +194,7 @@ fn errors(
 ) -> Vec<(f64, f64)> {
     let filtering = FilterSettings { filter_batch: Some(1), ..filtering.clone() };
     let error = |samples: u64| {
-        let runs = 4.max(24 / samples);
+        let runs = 3;
         let one = |run: u64| {
             let seed = seed.wrapping_add(samples << 32 | run);
             let settings = RenderSettings { seed, threads: 2, ..RenderSettings::new(Budget::Samples(samples)) };
@@ -210,9 +210,14 @@ fn truth(scene: &ReferenceScene, samples: u64) -> LayeredImage {
     render(scene, &RenderSettings { seed: 77, threads: 2, ..RenderSettings::new(Budget::Samples(samples)) })
 }
 
+/// A radius at which blur is larger than noise, and that shrinks faster than usual, so that few batches tell whether it vanishes.
+fn far() -> FilterSettings {
+    FilterSettings { filter_radius: 12.0, filter_exponent: 0.5, ..FilterSettings::default() }
+}
+
 /// Weights of which each is consistent: what is averaged, and how far in pixels.
 fn weights() -> [(&'static str, PathFilterName, FilterSettings); 6] {
-    let usual = || FilterSettings { filter_radius: 6.0, ..FilterSettings::default() };
+    let usual = far;
     let all = || FilterSettings { filter_normals: -1.0, filter_as_stored: true, ..usual() };
     [
         ("everything", PathFilterName::Psf, all()),
@@ -231,7 +236,7 @@ fn errors_fall_with_every_batch_for_every_weight() {
     for (name, filter, filtering) in weights() {
         let check = SUITE.check(&format!("cornell box, {name}"));
         let points = errors(&scene, check.seed(), &truth, filter, &filtering);
-        println!("{}", slope_at_most(check, &points, -0.3).expect_pass());
+        println!("{}", slope_at_most(check, &points, -0.7).expect_pass());
     }
     for (name, filter, filtering) in weights() {
         if name == "everything" || name == "hash" {
@@ -239,25 +244,25 @@ fn errors_fall_with_every_batch_for_every_weight() {
             let held = FilterSettings { filter_exponent: 1e-6, ..filtering };
             let check = SUITE.twin(&format!("held, {name}"));
             let points = errors(&scene, check.seed(), &truth, filter, &held);
-            println!("{}", slope_at_most(check, &points, -0.3).expect_reject());
+            println!("{}", slope_at_most(check, &points, -0.7).expect_reject());
         }
     }
 }
 
 #[test]
 fn errors_fall_in_the_interior_and_on_glossy_surfaces() {
-    let usual = || FilterSettings { filter_radius: 6.0, ..FilterSettings::default() };
+    let usual = far;
     for (name, description) in [("interior", builtin::interior()), ("glossy", builtin::conference())] {
         let scene = scene(description, [24, 18]);
         let truth = truth(&scene, 4096);
         for filter in [PathFilterName::Psf, PathFilterName::PsfHash] {
             let check = SUITE.check(&format!("{name}, {filter:?}"));
             let points = errors(&scene, check.seed(), &truth, filter, &usual());
-            println!("{}", slope_at_most(check, &points, -0.3).expect_pass());
+            println!("{}", slope_at_most(check, &points, -0.7).expect_pass());
         }
         let held = FilterSettings { filter_exponent: 1e-6, ..usual() };
         let check = SUITE.twin(&format!("{name}, held"));
         let points = errors(&scene, check.seed(), &truth, PathFilterName::Psf, &held);
-        println!("{}", slope_at_most(check, &points, -0.3).expect_reject());
+        println!("{}", slope_at_most(check, &points, -0.7).expect_reject());
     }
 }
