@@ -12,7 +12,12 @@ pub(crate) fn map<T: Sync, U: Send>(elements: &[T], f: impl Fn(&T) -> U + Sync) 
 pub(crate) fn map_range<U: Send>(len: usize, f: impl Fn(usize) -> U + Sync) -> Vec<U> {
     let chunk = |chunk: usize| (chunk * CHUNK..len.min((chunk + 1) * CHUNK)).map(&f).collect::<Vec<U>>();
     let mut chunks = map_parts(len.div_ceil(CHUNK), chunk);
-    if chunks.len() == 1 { chunks.remove(0) } else { chunks.into_iter().flatten().collect() }
+    if chunks.len() == 1 {
+        return chunks.remove(0);
+    }
+    let mut all = Vec::with_capacity(len);
+    chunks.iter_mut().for_each(|chunk| all.append(chunk));
+    all
 }
 
 /// `f` of `0..len`, in order, where each takes long enough to be worth a task.
