@@ -6,44 +6,33 @@ use crate::{Contribution, parallel};
 /// Vertices of a part, about: its table fits into a cache.
 const PART: usize = 1 << 12;
 
-/// Vertices in parts by the hash of their cells.
-struct Parts {
-    /// Vertices of the parts, one part after the other, ascending within.
-    ids: Vec<u32>,
-    starts: Vec<usize>,
+/// A vertex with its cell.
+#[derive(Clone, Copy)]
+struct Entry<C> {
+    key: Key,
+    id: u32,
+    value: C,
+}
+
+/// Vertices in parts by the hash of their cells: what a part needs lies together, ids ascending.
+struct Parts<C> {
+    parts: Vec<Vec<Entry<C>>>,
     bits: u32,
 }
 
-impl Parts {
-    fn new(keys: &[Option<Key>]) -> Self {
+impl<C: Copy + Send + Sync> Parts<C> {
+    fn new(keys: &[Option<Key>], values: &[C]) -> Self {
         let bits = (keys.len() / PART).max(1).ilog2().min(16);
-        let parts = parallel::map(keys, |key| key.as_ref().map_or(u32::MAX, |key| part_of(key, bits)));
-        let mut starts = vec![0_usize; (1 << bits) + 1];
-        for &part in &parts {
-            if part != u32::MAX {
-                starts[part as usize + 1] += 1;
+        let part_of_each = parallel::map(keys, |key| key.as_ref().map_or(u32::MAX, |key| part_of(key, bits)));
+        let mut counts = vec![0_usize; 1 << bits];
+        part_of_each.iter().filter(|&&part| part != u32::MAX).for_each(|&part| counts[part as usize] += 1);
+        let mut parts: Vec<Vec<Entry<C>>> = counts.into_iter().map(Vec::with_capacity).collect();
+        for (((id, key), &value), &part) in (0_u32..).zip(keys).zip(values).zip(&part_of_each) {
+            if let Some(key) = *key {
+                parts[part as usize].push(Entry { key, id, value });
             }
         }
-        for part in 1..starts.len() {
-            starts[part] += starts[part - 1];
-        }
-        let mut ids = vec![0; starts[starts.len() - 1]];
-        let mut next = starts.clone();
-        for (id, &part) in (0_u32..).zip(&parts) {
-            if part != u32::MAX {
-                ids[next[part as usize]] = id;
-                next[part as usize] += 1;
-            }
-        }
-        Self { ids, starts, bits }
-    }
-
-    fn len(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    fn ids(&self, part: usize) -> &[u32] {
-        &self.ids[self.starts[part]..self.starts[part + 1]]
+        Self { parts, bits }
     }
 }
 
@@ -91,17 +80,16 @@ impl<S> Table<S> {
 
 impl<S: Clone> Table<S> {
     /// Adds up the contributions of a part; the position of each one's cell.
-    fn sum<C: Contribution<Sum = S>>(&mut self, ids: &[u32], keys: &[Option<Key>], values: &[C], cells: &mut Vec<u32>) {
-        for &id in ids {
-            let Some(key) = &keys[id as usize] else { continue };
-            let slot = self.slot(key);
+    fn sum<C: Contribution<Sum = S>>(&mut self, entries: &[Entry<C>], cells: &mut Vec<u32>) {
+        for entry in entries {
+            let slot = self.slot(&entry.key);
             if self.slots[slot] == 0 {
-                self.cells.push(Cell { key: *key, sum: C::NOTHING, count: 0 });
+                self.cells.push(Cell { key: entry.key, sum: C::NOTHING, count: 0 });
                 self.slots[slot] = self.cells.len() as u32;
             }
             let place = self.slots[slot] - 1;
             let cell = &mut self.cells[place as usize];
-            values[id as usize].add(1.0, &mut cell.sum);
+            entry.value.add(1.0, &mut cell.sum);
             cell.count += 1;
             cells.push(place);
         }
@@ -113,24 +101,24 @@ pub(super) fn averages<C>(keys: &[Option<Key>], values: &mut [C]) -> Vec<u32>
 where
     C: Contribution + Send + Sync,
 {
-    let parts = Parts::new(keys);
+    let Parts { parts, .. } = Parts::new(keys, values);
     let of_part = |part: usize| {
-        let ids = parts.ids(part);
-        let (mut table, mut cells) = (Table::new(ids.len()), Vec::with_capacity(ids.len()));
-        table.sum(ids, keys, values, &mut cells);
+        let entries = &parts[part];
+        let (mut table, mut cells) = (Table::new(entries.len()), Vec::with_capacity(entries.len()));
+        table.sum(entries, &mut cells);
         let mean = |cell: &Cell<C::Sum>| (C::mean(&cell.sum, f64::from(cell.count)), cell.count);
         (table.cells.iter().map(mean).collect::<Vec<_>>(), cells)
     };
     let found = parallel::map_parts(parts.len(), of_part);
     let mut counts = vec![0; values.len()];
-    for (part, (means, cells)) in found.into_iter().enumerate() {
-        for (&id, cell) in parts.ids(part).iter().zip(cells) {
+    for (entries, (means, cells)) in parts.iter().zip(found) {
+        for (entry, cell) in entries.iter().zip(cells) {
             let (mean, count) = means[cell as usize];
             // Alone, bit for bit.
             if count > 1 {
-                values[id as usize] = mean;
+                values[entry.id as usize] = mean;
             }
-            counts[id as usize] = count;
+            counts[entry.id as usize] = count;
         }
     }
     counts
@@ -147,14 +135,13 @@ where
     C: Contribution + Send + Sync,
 {
     pub(super) fn new(keys: &[Option<Key>], values: &[C]) -> Self {
-        let parts = Parts::new(keys);
+        let Parts { parts, bits } = Parts::new(keys, values);
         let of_part = |part: usize| {
-            let ids = parts.ids(part);
-            let mut table = Table::new(ids.len());
-            table.sum(ids, keys, values, &mut Vec::new());
+            let mut table = Table::new(parts[part].len());
+            table.sum(&parts[part], &mut Vec::new());
             table
         };
-        Self { tables: parallel::map_parts(parts.len(), of_part), bits: parts.bits }
+        Self { tables: parallel::map_parts(parts.len(), of_part), bits }
     }
 
     /// The average of a cell, if anything fell into it.

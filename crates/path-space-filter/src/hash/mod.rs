@@ -117,8 +117,6 @@ where
     fn average(&self, vertices: &[V], batch: u64) -> Averages<V::Contribution> {
         let mut values = parallel::map(vertices, |vertex| self.modulation.demodulate(vertex));
         let mut counts = vec![0; vertices.len()];
-        let part: Vec<bool> =
-            parallel::map_range(vertices.len(), |i| takes_part(&vertices[i]) && values[i].is_finite());
         for iteration in 0..self.iterations {
             let keys = self.keys(vertices, &values, batch, iteration);
             let more = cells::averages(&keys, &mut values);
@@ -130,7 +128,12 @@ where
         };
         let values = parallel::map_range(vertices.len(), finish);
         let mut all = Counts::default();
-        (0..vertices.len()).filter(|&i| part[i]).for_each(|i| all.add(counts[i].max(1)));
+        // Without a key, and so without a count, are vertices that take no part, and all if there is no radius.
+        for (&count, vertex) in counts.iter().zip(vertices) {
+            if count > 0 || takes_part(vertex) {
+                all.add(count.max(1));
+            }
+        }
         Averages { values, counts: all }
     }
 
@@ -152,6 +155,7 @@ where
 
     fn bytes_per_vertex(&self) -> usize {
         let cell = size_of::<Key>() + size_of::<<V::Contribution as Contribution>::Sum>() + 16;
-        2 * size_of::<V::Contribution>() + size_of::<Option<Key>>() + 8 + 12 + 2 * cell
+        // Values twice, keys, vertices sorted into parts, numbers of parts and of cells, counts; tables and cells.
+        3 * size_of::<V::Contribution>() + 2 * size_of::<Option<Key>>() + 16 + 2 * cell
     }
 }
