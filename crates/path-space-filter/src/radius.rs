@@ -84,8 +84,9 @@ impl Radius {
     /// A disk as large as `side` times `side` pixels of the given solid angle, in sr; the paper's example is 3.
     ///
     /// # Errors
-    /// If the product is negative or not finite.
+    /// If the side is negative, or anything is not finite.
     pub fn pixels(side: f32, pixel_solid_angle: f32) -> Result<Self, RadiusError> {
+        let side = checked(side)?;
         Self::solid_angle(side * side * pixel_solid_angle)
     }
 
@@ -149,6 +150,7 @@ mod tests {
             assert!(Radius::absolute(bad).is_err());
             assert!(Radius::of_distance(bad).is_err());
             assert!(Radius::solid_angle(bad).is_err());
+            assert!(Radius::pixels(bad, 1e-6).is_err() && Radius::pixels(3.0, bad).is_err());
         }
         for bad in [0.0, 1.0, -0.5, f32::NAN] {
             let error = Radius::absolute(1.0).unwrap().with_exponent(bad).unwrap_err();
