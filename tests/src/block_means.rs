@@ -67,7 +67,21 @@ pub fn render_by<S: Scene + Sync>(
     samplers: &impl SamplerFamily,
     samples: u64,
 ) -> Rendering {
-    let (filter, budget) = (Filter::BOX, Budget::Samples(samples));
+    render_through(Filter::BOX, scene, camera, samplers, samples)
+}
+
+/// [`render_by`] with a reconstruction filter.
+///
+/// # Panics
+/// If the image cannot be rendered.
+pub fn render_through<S: Scene + Sync>(
+    filter: Filter,
+    scene: &S,
+    camera: &impl CameraPass,
+    samplers: &impl SamplerFamily,
+    samples: u64,
+) -> Rendering {
+    let budget = Budget::Samples(samples);
     let job = Job { scene, samplers, camera, light: None::<&NoLightPaths>, filter, budget, threads: 1 };
     job.render(|_| std::ops::ControlFlow::Continue(())).expect("a scene with a size")
 }

@@ -17,5 +17,5 @@ pub mod scenes;
 pub mod shares;
 mod truth;
 
-pub use block_means::{Effort, block_means, blocks_of, means_of, render_by};
+pub use block_means::{Effort, block_means, blocks_of, means_of, render_by, render_through};
 pub use truth::Truth;

@@ -10,7 +10,7 @@ use lichtwerk::estimators::{FirstEvent, NextEvent, OwnSampling, PathTracer};
 use lichtwerk::program::{EstimatorName, RenderSettings, SamplerName};
 use lichtwerk::render::Budget;
 use lichtwerk_tests::planted::{FewDimensions, PlaceInImage};
-use lichtwerk_tests::{Effort, block_means, means_of, render_by, scenes};
+use lichtwerk_tests::{Effort, block_means, means_of, render_through, scenes};
 use qmc_sampling::{OwenSobol, SamplerFamily};
 use scene_core::film::Filter;
 use scene_core::{ReferenceScene, RussianRoulette, Scene};
@@ -66,7 +66,9 @@ fn path_by<F: SamplerFamily>(name: &str, family: impl Fn(u64) -> F) -> BatchMean
         roulette: RussianRoulette::PathThroughput { from_length: settings.rr_depth - 1 },
         first_event: FirstEvent::Any,
     };
-    means_of(name, Effort::QUICK, |seed| render_by(&scene, &camera, &family(seed), Effort::QUICK.samples))
+    means_of(name, Effort::QUICK, |seed| {
+        render_through(settings.filter, &scene, &camera, &family(seed), Effort::QUICK.samples)
+    })
 }
 
 #[test]

@@ -29,13 +29,14 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     };
     let mut all = make();
     let mut noise: [Replications; 5] = Default::default();
-    // Variances of a few renderings each.
+    // Variances of a few renderings each, relative to the truth: those of the edges of the lamp would hide all others.
+    let truth = reference.rgb()?;
     for group in 0..groups {
         let mut variants = make();
         let of_group = Context { seed: context.seed_of("group", group), ..context.clone() };
         run(&of_group, &setup, &reference, &mut variants, samples, trials)?;
         for ((noise, variant), all) in noise.iter_mut().zip(&variants).zip(&mut all) {
-            noise.push(variant.trials.variance());
+            noise.push(variant.trials.relative_variance(&truth));
             if group == 0 {
                 all.trials = variant.trials.clone();
             }
