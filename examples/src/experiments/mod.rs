@@ -9,6 +9,7 @@
 //! - [`Setup`]: a builtin scene with settings, rendered with one seed after the other.
 //! - [`Trials`]: renderings of one setting with several seeds, against a reference; [`ratio_of_means`] compares two.
 
+mod claims;
 mod context;
 mod filtering;
 mod many_lights;

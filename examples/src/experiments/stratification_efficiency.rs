@@ -5,6 +5,7 @@ use scene_core::film::LayeredImage;
 use serde_json::Value;
 use vpl_gi::Threshold;
 
+use super::claims::at_most;
 use super::{Claim, Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
 use crate::choices::AnyHeuristic;
 use crate::light_paths::LightPathSettings;
@@ -239,8 +240,4 @@ fn fixed_threshold(sweeps: &[Vec<Candidate>], report: &mut Report) {
         let threshold = first[k].threshold.unwrap_or(f32::NAN);
         report.claims.push(at_most(format!("one-threshold-{threshold}-for-all-in-{name}"), ratio, 1.15));
     }
-}
-
-fn at_most(id: String, ratio: Ratio, limit: f64) -> Claim {
-    Claim { id, paper: format!("<= {limit}"), measured: ratio.value, ci95: ratio.ci95, holds: ratio.value <= limit }
 }

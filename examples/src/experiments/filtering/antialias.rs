@@ -23,13 +23,13 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     report.rows.extend(variants.iter().map(|variant| variant.row(&setup, 1)));
     report.rows.extend(four.iter().map(|variant| variant.row(&setup, 4)));
     let [input, psf, more] = &variants;
-    report.claims.push(at_least("fence-gain-psf".to_owned(), gain(&psf.trials, &input.trials), 1.0));
+    report.claims.push(at_least("fence-gain-psf", gain(&psf.trials, &input.trials), 1.0));
     report.claims.push(at_least(
         "fence-gain-of-three-more-camera-samples".to_owned(),
         gain(&more.trials, &psf.trials),
         1.5,
     ));
-    report.claims.push(at_least("fence-gain-over-the-input".to_owned(), gain(&more.trials, &input.trials), 2.0));
-    report.claims.push(reported("fence-gain-over-four-paths".to_owned(), gain(&more.trials, &four[0].trials)));
+    report.claims.push(at_least("fence-gain-over-the-input", gain(&more.trials, &input.trials), 2.0));
+    report.claims.push(reported("fence-gain-over-four-paths", gain(&more.trials, &four[0].trials)));
     Ok(report)
 }

@@ -109,6 +109,6 @@ fn cameras(context: &Context, report: &mut Report) -> Result<(), Failure> {
         }
         Ok::<(), Failure>(())
     })?;
-    report.claims.push(at_least("gain-of-four-cameras-over-one".to_owned(), ratio_of_means(&alone, &together), 1.0));
+    report.claims.push(at_least("gain-of-four-cameras-over-one", ratio_of_means(&alone, &together), 1.0));
     Ok(())
 }

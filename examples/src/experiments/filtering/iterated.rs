@@ -58,8 +58,6 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         gain(&four.trials, &input.trials),
         1.0,
     ));
-    report
-        .claims
-        .push(reported("cornell-box-gain-of-three-more-iterations".to_owned(), gain(&four.trials, &once.trials)));
+    report.claims.push(reported("cornell-box-gain-of-three-more-iterations", gain(&four.trials, &once.trials)));
     Ok(report)
 }

@@ -10,6 +10,7 @@ mod weights;
 
 use scene_core::film::LayeredImage;
 
+use super::claims::{at_least, reported};
 use super::{Claim, Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
 use crate::filters::{FilterSettings, PathFilterName};
 use crate::program::{Failure, RenderSettings};
@@ -75,14 +76,4 @@ fn run(
 /// How many times smaller the error of the second is.
 fn gain(of: &Trials, over: &Trials) -> Ratio {
     ratio_of_means(over.relative_mse(), of.relative_mse())
-}
-
-fn at_least(id: String, ratio: Ratio, limit: f64) -> Claim {
-    let holds = ratio.value >= limit;
-    Claim { id, paper: format!(">= {limit}"), measured: ratio.value, ci95: ratio.ci95, holds }
-}
-
-/// A claim without a limit: reported as it is.
-fn reported(id: String, ratio: Ratio) -> Claim {
-    Claim { id, paper: "-".to_owned(), measured: ratio.value, ci95: ratio.ci95, holds: true }
 }

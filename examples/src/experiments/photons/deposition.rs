@@ -38,25 +38,25 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
             let all = comparison.run(&mut report)?;
             let id = |what: &str| format!("{stored}-{what}");
             let ratio = ratio_of_means(&all.standard.error, &all.importance.error);
-            report.claims.push(at_least(&id("error-at-same-memory-standard-over-importance"), ratio, 10.0));
+            report.claims.push(at_least(id("error-at-same-memory-standard-over-importance"), ratio, 10.0));
             let ratio = ratio_of_means(&all.standard.same_radius, &all.importance.same_radius);
-            report.claims.push(reported(&id("the-same-at-the-standard-maps-radius"), ratio));
+            report.claims.push(reported(id("the-same-at-the-standard-maps-radius"), ratio));
             let ratio = ratio_of_means(&all.tenth.error, &all.standard.error);
-            report.claims.push(at_most(&id("error-with-a-tenth-of-the-photons-over-standard"), ratio, 1.0));
+            report.claims.push(at_most(id("error-with-a-tenth-of-the-photons-over-standard"), ratio, 1.0));
             let ratio = ratio_of_means(&all.standard.found, &all.tenth.same_error_found);
-            report.claims.push(at_least(&id("photons-per-query-at-no-larger-error-standard-over-a-tenth"), ratio, 1.0));
+            report.claims.push(at_least(id("photons-per-query-at-no-larger-error-standard-over-a-tenth"), ratio, 1.0));
             let ratio = ratio_of_means(&all.standard.query, &all.tenth.same_error_query);
-            report.claims.push(at_least(&id("query-time-at-no-larger-error-standard-over-a-tenth"), ratio, 1.0));
+            report.claims.push(at_least(id("query-time-at-no-larger-error-standard-over-a-tenth"), ratio, 1.0));
             for (what, measured) in [("guided", &all.guided), ("guided-importance", &all.guided_importance)] {
                 let ratio = ratio_of_means(&all.standard.error, &measured.error);
-                report.claims.push(reported(&id(&format!("error-at-same-memory-standard-over-{what}")), ratio));
+                report.claims.push(reported(id(&format!("error-at-same-memory-standard-over-{what}")), ratio));
                 let ratio = ratio_of_means(&measured.error, &all.importance.error);
-                report.claims.push(reported(&id(&format!("error-at-same-memory-{what}-over-importance")), ratio));
+                report.claims.push(reported(id(&format!("error-at-same-memory-{what}-over-importance")), ratio));
             }
             let ratio = ratio_of_means(&all.importance.seconds, &all.guided_importance.seconds);
-            report.claims.push(reported(&id("tracing-time-importance-over-guided-importance"), ratio));
+            report.claims.push(reported(id("tracing-time-importance-over-guided-importance"), ratio));
             let ratio = ratio_of_means(&all.cutoff.error, &all.tenth.error);
-            report.claims.push(reported(&id("error-with-cutoff-over-floor"), ratio));
+            report.claims.push(reported(id("error-with-cutoff-over-floor"), ratio));
         }
         let noise = places.noise();
         report.claims.push(reported("error-of-the-truth", Ratio { value: noise, ci95: [noise; 2] }));

@@ -17,7 +17,8 @@ use photon_map::{Deposition, MapPartition, PhotonMaps};
 use qmc_sampling::OwenSobol;
 use scene_core::{PowerChoice, RayCounts, ReferenceScene, RussianRoulette, Scene};
 
-use super::{Claim, Ratio, Setup};
+use super::Setup;
+use super::claims::{at_least, at_most, reported};
 use crate::estimators::{PathGuidance, PhotonTracing, Storing};
 use crate::photons::{PathLimits, PhotonError, PhotonSettings};
 use crate::program::Failure;
@@ -88,19 +89,4 @@ fn limits() -> PathLimits {
 /// Keeps what a rule decides, in one map; direct light is found otherwise.
 fn storing<D>(deposition: D) -> Result<Storing<D>, Failure> {
     Ok(Storing { partition: MapPartition::one_number(1.0)?, deposition, primary: false, global: true })
-}
-
-fn at_least(id: &str, ratio: Ratio, limit: f64) -> Claim {
-    let holds = ratio.value >= limit;
-    Claim { id: id.to_owned(), paper: format!(">= {limit}"), measured: ratio.value, ci95: ratio.ci95, holds }
-}
-
-fn at_most(id: &str, ratio: Ratio, limit: f64) -> Claim {
-    let holds = ratio.value <= limit;
-    Claim { id: id.to_owned(), paper: format!("<= {limit}"), measured: ratio.value, ci95: ratio.ci95, holds }
-}
-
-/// A claim without a limit: reported as it is.
-fn reported(id: &str, ratio: Ratio) -> Claim {
-    Claim { id: id.to_owned(), paper: "-".to_owned(), measured: ratio.value, ci95: ratio.ci95, holds: true }
 }

@@ -212,10 +212,10 @@ fn projection(context: &Context, setup: &Setup, report: &mut Report) -> Result<(
     // P2: a projection map finds no caustics of indirect light.
     report.claims.push(match name {
         "caustic-room" => at_most("caustic-room-share-of-caustic-flux-that-a-projection-map-finds", found, 0.1),
-        _ => at_least(&format!("{name}-share-of-caustic-flux-that-a-projection-map-finds"), found, 0.5),
+        _ => at_least(format!("{name}-share-of-caustic-flux-that-a-projection-map-finds"), found, 0.5),
     });
     let gain = Ratio { value: projected_count.mean() / plain_count.mean(), ..interval(&projected_count, &plain_count) };
-    report.claims.push(reported(&format!("{name}-caustic-photons-per-path-projected-over-plain"), gain));
+    report.claims.push(reported(format!("{name}-caustic-photons-per-path-projected-over-plain"), gain));
     Ok(())
 }
 

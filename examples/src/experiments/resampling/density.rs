@@ -72,12 +72,12 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
     let [first, .., last] = &distances[..] else { return Ok(report) };
     let of_uniform =
         Ratio { value: first.mean() / uniform, ci95: first.confidence_interval(0.95).map(|x| x / uniform) };
-    report.claims.push(at_most("figure-1-m1-is-the-source".to_owned(), of_uniform, 1.02));
+    report.claims.push(at_most("figure-1-m1-is-the-source", of_uniform, 1.02));
     for (pair, counts) in distances.windows(2).zip(CANDIDATES.windows(2)) {
         let id = format!("figure-1-m{}-is-closer-than-m{}", counts[1], counts[0]);
         report.claims.push(at_most(id, ratio_of_means(&pair[1], &pair[0]), 1.0));
     }
-    report.claims.push(at_most("figure-1-m32-is-nearly-the-target".to_owned(), ratio_of_means(last, first), 0.02));
+    report.claims.push(at_most("figure-1-m32-is-nearly-the-target", ratio_of_means(last, first), 0.02));
     Ok(report)
 }
 

@@ -20,8 +20,9 @@ use ris::{Budget, RatioMap, Source, Target, VarianceModel};
 use scene_core::texture::{ColorSpace, Image};
 use scene_core::{Scene, Sensor, Spectrum, Vertex, builtin};
 
+use super::claims::{at_least, at_most, reported};
 use super::setup::asset_file;
-use super::{Claim, Context, Ratio, Setup};
+use super::{Context, Ratio, Setup};
 use crate::choices::{AnyChoice, LightSelection};
 use crate::estimators::{DirectLight, EnvironmentSampling, ResampledDirect, SourceMix};
 use crate::program::{EstimatorName, Failure, RenderSettings};
@@ -138,19 +139,4 @@ fn blob_hdr(context: &Context, size: [u32; 2]) -> Result<Option<Setup>, Failure>
 /// `1 - ratio`, with its interval.
 fn reduction(ratio: Ratio) -> Ratio {
     Ratio { value: 1.0 - ratio.value, ci95: [1.0 - ratio.ci95[1], 1.0 - ratio.ci95[0]] }
-}
-
-fn at_least(id: String, ratio: Ratio, limit: f64) -> Claim {
-    let holds = ratio.value >= limit;
-    Claim { id, paper: format!(">= {limit}"), measured: ratio.value, ci95: ratio.ci95, holds }
-}
-
-fn at_most(id: String, ratio: Ratio, limit: f64) -> Claim {
-    let holds = ratio.value <= limit;
-    Claim { id, paper: format!("<= {limit}"), measured: ratio.value, ci95: ratio.ci95, holds }
-}
-
-/// A claim without a limit: reported as it is.
-fn reported(id: String, ratio: Ratio) -> Claim {
-    Claim { id, paper: "-".to_owned(), measured: ratio.value, ci95: ratio.ci95, holds: true }
 }

@@ -110,7 +110,7 @@ fn compare(optimal: &[f64], cost: CostModel, few: &[f64], many: &[f64], report: 
     }
     let better = many.iter().zip(few).filter(|(many, few)| many < few).count() as f64 / many.len() as f64;
     let better = Ratio { value: better, ci95: [better; 2] };
-    report.claims.push(reported("figure-3-share-of-pixels-where-m60-has-less-variance".to_owned(), better));
+    report.claims.push(reported("figure-3-share-of-pixels-where-m60-has-less-variance", better));
 }
 
 /// Green where candidates pay, red where samples do, on the scale of the logarithm of M from 1 to 3600.
