@@ -2,7 +2,7 @@
 
 use range_search::{HashGrid, Neighborhood};
 
-use super::mean::{Counted, Mean, Rule, over_squared, weight, weight_of_center};
+use super::mean::{Counted, Mean, Rule, over_squared};
 use super::prepared::{Iterated, Prepared};
 use crate::{Contribution, Kernel, Similarity, parallel};
 
@@ -128,10 +128,7 @@ impl<F> Level<F> {
         let mut mean = Mean::new();
         for (&slot, distance_squared) in neighborhood.slots().iter().zip(neighborhood.distances_squared()) {
             let slot = slot as usize;
-            let mut weight = weight(rule, features, &self.features[slot], distance_squared * over);
-            if slot == center {
-                weight = weight_of_center(weight);
-            }
+            let weight = rule.weight(features, &self.features[slot], distance_squared * over, slot == center);
             mean.add(weight, values[slot]);
         }
         mean.finish()

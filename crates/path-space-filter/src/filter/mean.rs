@@ -25,11 +25,10 @@ impl<C: Contribution> Mean<C> {
         Self { sum: C::NOTHING, weights: 0.0, count: 0 }
     }
 
-    /// Adds a contribution unless its weight is zero, or none at all.
+    /// Adds a contribution unless its weight is zero, or no weight at all.
     #[inline(always)]
     pub(super) fn add(&mut self, weight: f32, contribution: C) {
-        // Not if it is NaN either.
-        if weight > 0.0 && weight < f32::INFINITY {
+        if is_weight(weight) {
             contribution.add(weight, &mut self.sum);
             self.weights += f64::from(weight);
             self.count += 1;
@@ -42,21 +41,22 @@ impl<C: Contribution> Mean<C> {
     }
 }
 
-/// The weight of a neighbour.
-#[inline(always)]
-pub(super) fn weight<V, S: Similarity<V>, K: Kernel>(
-    rule: &Rule<'_, S, K>,
-    center: &S::Features,
-    other: &S::Features,
-    t_squared: f32,
-) -> f32 {
-    rule.kernel.weight(t_squared) * rule.similarity.weight(center, other)
+impl<S, K: Kernel> Rule<'_, S, K> {
+    /// The weight of a neighbour. The centre itself counts whatever its weight is.
+    #[inline(always)]
+    pub(super) fn weight<V>(&self, center: &S::Features, other: &S::Features, t_squared: f32, is_center: bool) -> f32
+    where
+        S: Similarity<V>,
+    {
+        let weight = self.kernel.weight(t_squared) * self.similarity.weight(center, other);
+        if is_center && !is_weight(weight) { 1.0 } else { weight }
+    }
 }
 
-/// The centre counts whatever its weight is.
+/// Positive and finite; NaN is neither.
 #[inline(always)]
-pub(super) fn weight_of_center(weight: f32) -> f32 {
-    if weight > 0.0 && weight < f32::INFINITY { weight } else { 1.0 }
+fn is_weight(weight: f32) -> bool {
+    weight > 0.0 && weight < f32::INFINITY
 }
 
 /// `1 / r^2` for `t^2 = d^2 / r^2`; zero if nothing but the centre can be in the ball.

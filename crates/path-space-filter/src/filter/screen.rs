@@ -1,6 +1,6 @@
 //! Neighbours in the neighbourhood of the pixel.
 
-use super::mean::{Mean, Rule, over_squared, weight, weight_of_center};
+use super::mean::{Mean, Rule, over_squared};
 use super::prepared::{Iterated, Prepared};
 use crate::vertex::HasPixel;
 use crate::{Contribution, Kernel, PathVertex, Similarity, parallel};
@@ -101,10 +101,7 @@ impl Pixels {
                     let distance_squared = range_search::distance_squared(prepared.positions[j], center);
                     // Not if either is NaN.
                     if radius >= 0.0 && distance_squared <= radius * radius {
-                        let mut weight = weight(rule, features, &prepared.features[j], distance_squared * over);
-                        if i == j {
-                            weight = weight_of_center(weight);
-                        }
+                        let weight = rule.weight(features, &prepared.features[j], distance_squared * over, i == j);
                         mean.add(weight, prepared.values[j]);
                     }
                 }

@@ -2,11 +2,11 @@
 
 use std::sync::OnceLock;
 
-use range_search::{BruteForce, HashGrid, RangeIndex};
+use range_search::{BruteForce, BuildError, HashGrid, RangeIndex};
 
 use super::PathSpaceFilter;
 use super::grid;
-use super::mean::{Counted, Mean, Rule, over_squared, weight, weight_of_center};
+use super::mean::{Counted, Mean, Rule, over_squared};
 use super::prepared::{Iterated, Prepared};
 use crate::{Contribution, Kernel, Modulation, PathVertex, Similarity, parallel};
 
@@ -34,11 +34,7 @@ pub(super) enum Searched {
     /// Built when they are asked, and not kept.
     Grid,
     DivideAndConquer,
-    #[cfg(feature = "kiddo")]
-    KdTree(Box<range_search::KdTree>),
-    #[cfg(feature = "obvhs")]
-    Hierarchy(Box<range_search::Bvh>),
-    BruteForce(BruteForce),
+    Index(Box<dyn Finder>),
     /// More vertices than an index can name.
     Nothing,
 }
@@ -46,16 +42,19 @@ pub(super) enum Searched {
 impl Searched {
     pub(super) fn new<F, C>(search: Search, prepared: &Prepared<F, C>) -> Self {
         let positions = &prepared.positions;
-        let searched = match search {
-            Search::Grid => Some(Self::Grid),
-            Search::DivideAndConquer => Some(Self::DivideAndConquer),
+        match search {
+            Search::Grid => Self::Grid,
+            Search::DivideAndConquer => Self::DivideAndConquer,
             #[cfg(feature = "kiddo")]
-            Search::KdTree => range_search::KdTree::build(positions, |x| *x).ok().map(Box::new).map(Self::KdTree),
+            Search::KdTree => Self::index(range_search::KdTree::build(positions, |x| *x)),
             #[cfg(feature = "obvhs")]
-            Search::Hierarchy => range_search::Bvh::build(positions, |x| *x).ok().map(Box::new).map(Self::Hierarchy),
-            Search::BruteForce => BruteForce::build(positions, |x| *x).ok().map(Self::BruteForce),
-        };
-        searched.unwrap_or(Self::Nothing)
+            Search::Hierarchy => Self::index(range_search::Bvh::build(positions, |x| *x)),
+            Search::BruteForce => Self::index(BruteForce::build(positions, |x| *x)),
+        }
+    }
+
+    fn index(built: Result<impl RangeIndex + Sync + 'static, BuildError>) -> Self {
+        built.map_or(Self::Nothing, |index| Self::Index(Box::new(index)))
     }
 
     pub(super) fn averages<V, C, S, K>(&self, prepared: &Prepared<S::Features, C>, rule: &Rule<'_, S, K>) -> Iterated<C>
@@ -68,11 +67,7 @@ impl Searched {
         match self {
             Self::Grid => grid::averages(prepared, rule),
             Self::DivideAndConquer => divide_and_conquer(prepared, rule),
-            #[cfg(feature = "kiddo")]
-            Self::KdTree(tree) => with_index(&**tree, prepared, rule),
-            #[cfg(feature = "obvhs")]
-            Self::Hierarchy(hierarchy) => with_index(&**hierarchy, prepared, rule),
-            Self::BruteForce(all) => with_index(all, prepared, rule),
+            Self::Index(index) => with_index(&**index, prepared, rule),
             Self::Nothing => (prepared.values.clone(), vec![1; prepared.values.len()]),
         }
     }
@@ -113,10 +108,7 @@ where
             if !prepared.takes_part(j) {
                 return;
             }
-            let mut weight = weight(rule, features, &prepared.features[j], distance_squared * over);
-            if i == j {
-                weight = weight_of_center(weight);
-            }
+            let weight = rule.weight(features, &prepared.features[j], distance_squared * over, i == j);
             mean.add(weight, prepared.values[j]);
         });
         prepared.own(i, mean.finish())
@@ -141,10 +133,7 @@ where
             let (j, distance_squared) = (neighbour.id(), neighbour.distance_squared());
             // Those that a smaller radius finds; none if it is negative or NaN.
             if radius >= 0.0 && distance_squared <= radius * radius {
-                let mut weight = weight(rule, features, &prepared.features[j], distance_squared * over);
-                if i == j {
-                    weight = weight_of_center(weight);
-                }
+                let weight = rule.weight(features, &prepared.features[j], distance_squared * over, i == j);
                 mean.add(weight, prepared.values[j]);
             }
         }
@@ -183,14 +172,10 @@ where
     let shrinkage = filter.radius().shrinkage(batch);
     let radii = parallel::map(queries, |query| filter.radius().at(1, query.path_length()) * shrinkage);
     let asked = Asked { filter, prepared, queries, radii };
-    let positions = &prepared.positions;
-    let found = match filter.search {
-        Search::Grid | Search::DivideAndConquer => asked.of_grids(),
-        #[cfg(feature = "kiddo")]
-        Search::KdTree => range_search::KdTree::build(positions, |x| *x).ok().map(|tree| asked.of(&tree)),
-        #[cfg(feature = "obvhs")]
-        Search::Hierarchy => range_search::Bvh::build(positions, |x| *x).ok().map(|hierarchy| asked.of(&hierarchy)),
-        Search::BruteForce => BruteForce::build(positions, |x| *x).ok().map(|all| asked.of(&all)),
+    let found = match Searched::new(filter.search, prepared) {
+        Searched::Grid | Searched::DivideAndConquer => asked.of_grids(),
+        Searched::Index(index) => Some(parallel::map_range(queries.len(), |i| asked.mean(&*index, i))),
+        Searched::Nothing => None,
     };
     found.unwrap_or_else(|| vec![None; queries.len()])
 }
@@ -212,10 +197,6 @@ where
     K: Kernel + Sync,
     M: Modulation<V> + Sync,
 {
-    fn of(&self, index: &dyn Finder) -> Vec<Option<V::Contribution>> {
-        parallel::map_range(self.queries.len(), |i| self.mean(index, i))
-    }
-
     /// One grid for each order of magnitude.
     fn of_grids(&self) -> Option<Vec<Option<V::Contribution>>> {
         let (level_of, sizes) = grid::divide(&self.radii);
@@ -230,7 +211,7 @@ where
         let features = self.filter.similarity.features(query);
         let mut mean = Mean::new();
         index.find(query.position(), self.radii[i], &mut |j, distance_squared| {
-            let weight = weight(&rule, &features, &prepared.features[j], distance_squared * over);
+            let weight = rule.weight(&features, &prepared.features[j], distance_squared * over, false);
             mean.add(weight, prepared.values[j]);
         });
         mean.finish().map(|(mean, _)| self.filter.modulation.remodulate(query, mean))

@@ -1,6 +1,8 @@
 //! Weights that include or leave out.
 
-use super::{Similarity, binary, distance_squared, dot};
+use range_search::distance_squared;
+
+use super::{Similarity, binary, dot, is_close};
 use crate::vertex::{HasAlbedo, HasHitDistance, HasNormal, HasObject, HasTime, HasViewDirection, HasVisibility};
 
 /// Why there is no such weight.
@@ -183,8 +185,7 @@ impl<V: HasHitDistance> Similarity<V> for HitDistance {
 
     #[inline(always)]
     fn weight(&self, center: &f32, other: &f32) -> f32 {
-        // Equal infinities are equal, though their difference is NaN.
-        binary(center == other || (center - other).abs() <= self.max_difference)
+        binary(is_close(*center, *other, self.max_difference))
     }
 }
 
@@ -212,6 +213,6 @@ impl<V: HasTime> Similarity<V> for SimilarTime {
 
     #[inline(always)]
     fn weight(&self, center: &f32, other: &f32) -> f32 {
-        binary(center == other || (center - other).abs() <= self.max_difference)
+        binary(is_close(*center, *other, self.max_difference))
     }
 }

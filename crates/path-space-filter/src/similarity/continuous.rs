@@ -1,6 +1,8 @@
 //! Weights by degree: the paper's negative control.
 
-use super::{Similarity, SimilarityError, distance_squared, dot};
+use range_search::distance_squared;
+
+use super::{Similarity, SimilarityError, dot};
 use crate::vertex::{HasAlbedo, HasNormal};
 
 /// `max(0, <n_i, n_j>)^e`.

@@ -56,10 +56,10 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// Whether two lengths or times differ by this at most; equal infinities do, though their difference is NaN.
 #[inline(always)]
-fn distance_squared(a: [f32; 3], b: [f32; 3]) -> f32 {
-    let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    dot(d, d)
+fn is_close(a: f32, b: f32, max_difference: f32) -> bool {
+    a == b || (a - b).abs() <= max_difference
 }
 
 /// 1 if included.
