@@ -53,7 +53,7 @@ pub fn bake<S: Scene + Sync, F: SamplerFamily, E: Observable>(
             traced.append(trace_rays(&tracing, &context, rays, index));
         }
         let averages = filter.average(&traced.vertices, number + 1);
-        for (path, (_, radiance)) in traced.radiance(averages.values()).enumerate() {
+        for (path, radiance) in traced.radiance(averages.values()).enumerate() {
             let sum = &mut sums[path % rays.len()];
             (0..3).for_each(|k| sum[k] += f64::from(radiance[k]));
         }

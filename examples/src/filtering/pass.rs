@@ -94,7 +94,7 @@ impl<'a, E: Observable, P: PathFilter<FilterVertex> + Sync> Filtered<'a, E, P> {
         }
         let averages = self.filter.average(&traced.vertices, number);
         switch.observe(&averages);
-        (traced.radiance(averages.values()).map(|(_, radiance)| radiance).collect(), true)
+        (traced.radiance(averages.values()).collect(), true)
     }
 
     /// Adds the extra samples of a batch to the film.

@@ -51,7 +51,7 @@ impl Traced {
     }
 
     /// What each path says if these averages take the place of what arrives at its vertices.
-    pub fn radiance<'a>(&'a self, averages: &'a [[f32; 3]]) -> impl Iterator<Item = (&'a Path, [f32; 3])> {
+    pub fn radiance(&self, averages: &[[f32; 3]]) -> impl Iterator<Item = [f32; 3]> {
         let mut first = 0;
         self.paths.iter().map(move |path| {
             let range = first..first + path.vertices as usize;
@@ -60,14 +60,14 @@ impl Traced {
             for (mean, attenuation) in averages[range.clone()].iter().zip(&self.attenuations[range]) {
                 (0..3).for_each(|k| sum[k] += mean[k] * attenuation[k]);
             }
-            (path, sum)
+            sum
         })
     }
 
     /// What each path says without a filter.
     pub fn unfiltered(&self) -> Vec<[f32; 3]> {
         let own: Vec<[f32; 3]> = self.vertices.iter().map(|vertex| vertex.contribution).collect();
-        self.radiance(&own).map(|(_, radiance)| radiance).collect()
+        self.radiance(&own).collect()
     }
 }
 
@@ -167,12 +167,7 @@ impl<E: Observable> Tracing<'_, E> {
                 queries.unfiltered.push(unfiltered);
                 let found = vertices.next();
                 queries.attenuations.push(found.map(|found| found.attenuation));
-                queries.vertices.extend(found.map(|found| FilterVertex {
-                    pixel: place,
-                    time: self.time,
-                    visibility: if self.point_lights { visibility(&scene, &found.vertex) } else { 0 },
-                    ..found.vertex
-                }));
+                queries.vertices.extend(found.map(|found| self.complete(&scene, place, found.vertex)));
             }
             queries.rays = scene.counts();
             queries
@@ -181,6 +176,12 @@ impl<E: Observable> Tracing<'_, E> {
         let mut all = Queries::default();
         rows.into_iter().for_each(|row| all.append(row));
         all
+    }
+
+    /// A vertex with what its collector does not know.
+    fn complete<S: Scene>(&self, scene: &S, place: [u32; 2], vertex: FilterVertex) -> FilterVertex {
+        let visibility = if self.point_lights { visibility(scene, &vertex) } else { 0 };
+        FilterVertex { pixel: place, time: self.time, visibility, ..vertex }
     }
 
     /// So many paths, each with its ray, its numbers and the factor of its sensor.
@@ -203,12 +204,8 @@ impl<E: Observable> Tracing<'_, E> {
                     estimator.observe(context, &prepared, &scene, &mut scratch, eye, &mut sampler, &mut collector);
                 let (unfiltered, vertices) = collector.finish(weight);
                 let before = traced.vertices.len();
-                for Collected { mut vertex, attenuation } in vertices {
-                    (vertex.pixel, vertex.time) = (eye.place, self.time);
-                    if self.point_lights {
-                        vertex.visibility = visibility(&scene, &vertex);
-                    }
-                    traced.vertices.push(vertex);
+                for Collected { vertex, attenuation } in vertices {
+                    traced.vertices.push(self.complete(&scene, eye.place, vertex));
                     traced.attenuations.push(attenuation);
                 }
                 traced.paths.push(Path { unfiltered, first_hit, vertices: (traced.vertices.len() - before) as u32 });

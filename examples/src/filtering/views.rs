@@ -65,7 +65,7 @@ pub fn render_views<S: Scene + Sync, F: SamplerFamily, E: Observable>(
         for (traced, film) in all.iter().zip(&mut films) {
             let own = &averages[first..first + traced.vertices.len()];
             first += traced.vertices.len();
-            let radiances: Vec<[f32; 3]> = traced.radiance(own).map(|(_, radiance)| radiance).collect();
+            let radiances: Vec<[f32; 3]> = traced.radiance(own).collect();
             add_to_film(film, traced, &radiances);
         }
     }

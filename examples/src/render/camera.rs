@@ -70,19 +70,19 @@ impl<S: Scene + Sync, F: SamplerFamily> PassContext<'_, S, F> {
 
     /// The ray of sample number `index` of a pixel, and the sampler from which its numbers came.
     pub fn eye_ray<C: Scene>(&self, scene: &C, [x, y]: [u32; 2], index: u64) -> (F::Sampler, SensorRay) {
-        let mut sampler = self.sampler([x, y], index);
         // The first pair of numbers is the place in the pixel, also of sequences that run through the image.
-        let [dx, dy] = self.filter.sample(sampler.next_2d());
-        let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
-        let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
-        (sampler, ray)
+        self.ray_by(scene, [x, y], self.sampler([x, y], index))
     }
 
     /// Another ray of the same pixel and sample, with numbers of its own.
     pub fn extra_ray<C: Scene>(&self, scene: &C, place: [u32; 2], index: u64, number: u32) -> (F::Sampler, SensorRay) {
-        let mut sampler = self.sampler(place, index).fork(EXTRA_DOMAIN.wrapping_add(number));
+        self.ray_by(scene, place, self.sampler(place, index).fork(EXTRA_DOMAIN.wrapping_add(number)))
+    }
+
+    /// A ray of a pixel from the sampler's first numbers.
+    fn ray_by<C: Scene>(&self, scene: &C, [x, y]: [u32; 2], mut sampler: F::Sampler) -> (F::Sampler, SensorRay) {
         let [dx, dy] = self.filter.sample(sampler.next_2d());
-        let raster = [place[0] as f32 + 0.5 + dx, place[1] as f32 + 0.5 + dy];
+        let raster = [x as f32 + 0.5 + dx, y as f32 + 0.5 + dy];
         let ray = scene.sensor().sample_ray(raster, sampler.next_2d());
         (sampler, ray)
     }
