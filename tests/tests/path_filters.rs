@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 
 use estimator_checks::{Suite, slope_at_most};
+use lichtwerk::choices::AnyHeuristic;
 use lichtwerk::estimators::AmbientOcclusion;
 use lichtwerk::filtering::{Selection, View, bake, render_views};
 use lichtwerk::filters::{FilterSettings, PathFilterName};
@@ -114,6 +115,16 @@ fn estimators_that_tell_nobody_what_they_find_are_refused() {
         let settings = filtered(&settings, PathFilterName::Psf, FilterSettings::default());
         let error = estimate(&scene, &settings, |_| ControlFlow::Continue(())).unwrap_err();
         assert!(error.to_string().contains("photon-map"), "{error}");
+    }
+}
+
+#[test]
+fn heuristics_of_whole_paths_are_refused_as_without_a_filter() {
+    let scene = scene(builtin::cornell_box(), [4, 4]);
+    let plain = RenderSettings { heuristic: AnyHeuristic::Stratification, ..RenderSettings::new(Budget::Samples(1)) };
+    for settings in [plain.clone(), filtered(&plain, PathFilterName::Psf, FilterSettings::default())] {
+        let error = estimate(&scene, &settings, |_| ControlFlow::Continue(())).unwrap_err();
+        assert!(error.to_string().contains("stratification"), "{error}");
     }
 }
 

@@ -4,85 +4,68 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use clap::ValueEnum;
+use qmc_sampling::SamplerFamily;
 use scene_core::film::{Attribute, LayeredImage, SAMPLES_PER_PIXEL};
-
-use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
-use vpl_gi::{LightTracing, Residual, RobustIgi};
+use scene_core::{ReferenceScene, Scene, Sensor};
 
 use super::Failure;
-use super::render::{EstimatorName, RenderSettings, light_photons};
-use crate::choices::AnyChoice;
-use crate::estimators::{AmbientOcclusion, FirstEvent, NoLightPaths, PathTracer, VirtualLights};
+use super::finish::{Finish, Run};
+use super::render::{EstimatorName, RenderSettings};
+use crate::estimators::{LightEstimator, NoLightPaths};
 use crate::filtering::{Filtered, Observable, Tracing};
 use crate::filters::{FilterError, FilterSettings, PathFilterName};
-use crate::photons::PathLimits;
-use crate::render::{Job, Progress, RenderError, Rendering, Shared};
-use crate::resampling::AnyDirect;
-use crate::samplers::AnyFamily;
+use crate::render::{CameraPass, Progress, RenderError, Rendering};
 
-/// Renders with the estimator that the settings name, and filters it.
-pub(super) fn estimate<S: Scene + Sync>(
-    scene: &S,
-    settings: &RenderSettings,
-    name: PathFilterName,
-    samplers: &AnyFamily,
-    observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
-) -> Result<Rendering, RenderError> {
-    let choice = AnyChoice::new(settings.lights, scene.emitters());
-    let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
-    let limits = PathLimits { max_depth: settings.max_depth, roulette };
-    let mut run = Run { scene, settings, name, samplers, max_depth: settings.max_depth, as_stored: false };
+/// Refuses what does not go together with a filter.
+pub(super) fn check(settings: &RenderSettings) -> Result<(), FilterError> {
     match settings.estimator {
-        EstimatorName::Path | EstimatorName::Direct => {
-            let direct_only = settings.estimator == EstimatorName::Direct;
-            let resampling = settings.direct_settings();
-            let probes = resampling.probes(scene);
-            let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
-            let photons = light_photons(scene, samplers, settings)?;
-            let camera = PathTracer {
-                direct: match &photons {
-                    Some(photons) => AnyDirect::Photons(photons),
-                    None => resampling.direct(settings.heuristic, choice, resampled),
-                },
-                scattering: resampling.scattering(scene),
-                max_depth: if direct_only { settings.max_depth.min(2) } else { settings.max_depth },
-                roulette,
-                first_event: FirstEvent::Any,
-            };
-            run.max_depth = camera.max_depth;
-            run.render(&camera, observe)
-        }
         EstimatorName::Ao if settings.filtering.filter_extra > 0 => {
-            Err(FilterError::Setting("--filter-extra samples see light, which ao does not").into())
-        }
-        EstimatorName::Ao => {
-            // Occlusion has no colour.
-            run.as_stored = true;
-            run.render(&AmbientOcclusion { distance: settings.ao_distance }, observe)
-        }
-        EstimatorName::PhotonMap => {
-            let resampling = settings.direct_settings();
-            let probes = resampling.probes(scene);
-            let resampled = resampling.resampled(scene, samplers, probes.as_ref())?;
-            let direct = resampling.direct(settings.heuristic, choice.clone(), resampled);
-            run.render(&settings.photons.mapping(scene, direct, choice, limits)?, observe)
+            Err(FilterError::Setting("--filter-extra samples see light, which ao does not"))
         }
         EstimatorName::RobustIgi | EstimatorName::InstantRadiosity if settings.light_paths.gather > 0 => {
-            Err(FilterError::Setting("--filter psf averages paths, and --gather splits them: use one of both").into())
+            Err(FilterError::Setting("--filter psf averages paths, and --gather splits them: use one of both"))
         }
-        EstimatorName::RobustIgi | EstimatorName::InstantRadiosity if !settings.photons.caustics => {
-            let drops = settings.estimator == EstimatorName::InstantRadiosity;
-            let eye = settings.light_paths.robust(scene, if drops { Residual::Drop } else { Residual::Scatter })?;
-            let eye = RobustIgi { max_depth: settings.max_depth, roulette, ..eye };
-            let light = LightTracing {
-                choice,
-                max_length: settings.max_depth.saturating_sub(2),
-                roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
-            };
-            let estimator = VirtualLights { eye, light, paths: settings.light_paths.light_paths, caustics: None };
-            run.render(&Shared { estimator, sharing: settings.light_paths.sharing() }, observe)
+        EstimatorName::RobustIgi | EstimatorName::InstantRadiosity if settings.photons.caustics => {
+            Err(FilterError::Estimator)
         }
-        _ => Err(FilterError::Estimator.into()),
+        _ => Ok(()),
+    }
+}
+
+impl Finish for PathFilterName {
+    /// Filters it.
+    fn observable<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        run: &Run<'_, S, F>,
+        camera: &(impl CameraPass + Observable),
+        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Rendering, RenderError> {
+        let (settings, sensor) = (run.settings, run.scene.sensor());
+        let mut filtering = settings.filtering.clone();
+        // Occlusion has no colour.
+        filtering.filter_as_stored |= settings.estimator == EstimatorName::Ao;
+        let filter = filtering.filter(*self, sensor)?;
+        let [width, height] = sensor.resolution();
+        let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));
+        let done = settings.done;
+        if !done.is_multiple_of(batch) {
+            return Err(FilterError::Continue { done, batch }.into());
+        }
+        let selection = filtering.selection()?;
+        let tracing = Tracing { estimator: camera, selection, point_lights: filtering.filter_visibility, time: 0.0 };
+        let (extra, max_depth) = (filtering.filter_extra, settings.longest());
+        let camera = Filtered { done, extra, max_depth, ..Filtered::new(tracing, filter, batch) };
+        run.render(&camera, None::<&NoLightPaths>, observe)
+    }
+
+    fn other<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        _: &Run<'_, S, F>,
+        _: &impl CameraPass,
+        _: Option<&impl LightEstimator>,
+        _: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+    ) -> Result<Rendering, RenderError> {
+        Err(FilterError::Estimator.into())
     }
 }
 
@@ -126,42 +109,4 @@ pub(super) fn earlier(
     }
     let done = image.attribute(SAMPLES_PER_PIXEL).and_then(Attribute::as_u64);
     Ok((done.ok_or_else(|| refuse("it does not tell its samples per pixel".to_owned()))?, image))
-}
-
-/// What all estimators have in common.
-struct Run<'a, S> {
-    scene: &'a S,
-    settings: &'a RenderSettings,
-    name: PathFilterName,
-    samplers: &'a AnyFamily,
-    /// Segments of the estimator's paths at most.
-    max_depth: u32,
-    /// Whether contributions have no colour to be taken out.
-    as_stored: bool,
-}
-
-impl<S: Scene + Sync> Run<'_, S> {
-    fn render(
-        &self,
-        estimator: &impl Observable,
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
-    ) -> Result<Rendering, RenderError> {
-        let Self { scene, settings, name, samplers, max_depth, as_stored } = *self;
-        let mut filtering = settings.filtering.clone();
-        filtering.filter_as_stored |= as_stored;
-        let filter = filtering.filter(name, scene.sensor())?;
-        let [width, height] = scene.sensor().resolution();
-        let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));
-        let done = settings.done;
-        if !done.is_multiple_of(batch) {
-            return Err(FilterError::Continue { done, batch }.into());
-        }
-        let selection = filtering.selection()?;
-        let tracing = Tracing { estimator, selection, point_lights: filtering.filter_visibility, time: 0.0 };
-        let camera =
-            Filtered { done, extra: filtering.filter_extra, max_depth, ..Filtered::new(tracing, filter, batch) };
-        let (budget, threads) = (settings.budget, settings.threads);
-        Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter: settings.filter, budget, threads }
-            .render(observe)
-    }
 }

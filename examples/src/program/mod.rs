@@ -4,6 +4,7 @@ mod arguments;
 mod diff;
 mod experiment;
 mod filtered;
+mod finish;
 mod list;
 mod load;
 mod render;

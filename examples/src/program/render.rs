@@ -10,6 +10,7 @@ use scene_core::film::{Filter, LayeredImage};
 use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
 use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
+use super::finish::{Finish, Plain, Run};
 use super::{Failure, RenderArguments, filtered, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
@@ -23,7 +24,7 @@ use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
 use crate::photons::{PathLimits, PhotonSettings};
-use crate::render::{Budget, Job, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
+use crate::render::{Budget, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
 use crate::resampling::{AnyDirect, DirectName, ResamplingSettings};
 use crate::samplers::{AnyFamily, SamplerName};
 
@@ -162,13 +163,18 @@ impl RenderSettings {
         applies && self.lights == LightSelection::Photons && self.resampling.direct == DirectName::Nee
     }
 
+    /// Segments of the estimator's paths at most.
+    pub(super) fn longest(&self) -> u32 {
+        if self.estimator == EstimatorName::Direct { self.max_depth.min(2) } else { self.max_depth }
+    }
+
     /// The longest path as it is written down: -1 is unlimited.
     pub(super) fn max_depth_text(&self) -> String {
         if self.max_depth == u32::MAX { "-1".to_owned() } else { self.max_depth.to_string() }
     }
 
     /// The settings of resampling; `--lights ris` asks for it too.
-    pub(super) fn direct_settings(&self) -> ResamplingSettings {
+    fn direct_settings(&self) -> ResamplingSettings {
         let mut settings = self.resampling.clone();
         if self.lights == LightSelection::Ris {
             settings.direct = DirectName::Ris;
@@ -217,14 +223,15 @@ pub fn estimate<S: Scene + Sync>(
         };
         AnyFamily::new(name, scene.sensor().resolution(), paths, settings.seed)
     };
-    if let Some(name) = settings.path_filter {
-        return filtered::estimate(scene, settings, name, &family(settings.sampler)?, observe);
+    if let Some(filter) = settings.path_filter {
+        filtered::check(settings)?;
+        return estimate_with(scene, settings, &family(settings.sampler)?, &filter, observe);
     }
     match settings.sampler {
-        SamplerName::Independent => estimate_with(scene, settings, &Independent::new(settings.seed), observe),
-        SamplerName::Sobol => estimate_with(scene, settings, &OwenSobol::new(settings.seed), observe),
+        SamplerName::Independent => estimate_with(scene, settings, &Independent::new(settings.seed), &Plain, observe),
+        SamplerName::Sobol => estimate_with(scene, settings, &OwenSobol::new(settings.seed), &Plain, observe),
         // The others share one copy of the renderer.
-        name => estimate_with(scene, settings, &family(name)?, observe),
+        name => estimate_with(scene, settings, &family(name)?, &Plain, observe),
     }
 }
 
@@ -235,6 +242,7 @@ fn estimate_with<S: Scene + Sync>(
     scene: &S,
     settings: &RenderSettings,
     samplers: &impl SamplerFamily,
+    finish: &impl Finish,
     observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
 ) -> Result<Rendering, RenderError> {
     if settings.estimator != EstimatorName::Bdpt && !settings.heuristic.is_of_densities() {
@@ -242,29 +250,22 @@ fn estimate_with<S: Scene + Sync>(
     }
     let choice = AnyChoice::new(settings.lights, scene.emitters());
     let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
-    let (filter, budget, threads) = (settings.filter, settings.budget, settings.threads);
+    let run = Run { scene, samplers, settings };
     let mut path = PathTracer {
         direct: NextEvent { heuristic: settings.heuristic, choice: choice.clone() },
         scattering: OwnSampling,
-        max_depth: settings.max_depth,
+        max_depth: settings.longest(),
         roulette,
         first_event: FirstEvent::Any,
     };
-    if settings.estimator == EstimatorName::Direct {
-        path.max_depth = path.max_depth.min(2);
-    }
     let resampling = &settings.resampling;
     let limits = PathLimits { max_depth: settings.max_depth, roulette };
     match settings.estimator {
         // Without room for direct light there is nothing to reuse.
         EstimatorName::RestirDirect if settings.max_depth < 2 => {
-            Job { scene, samplers, camera: &path, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
+            finish.other(&run, &path, None::<&NoLightPaths>, observe)
         }
-        EstimatorName::Path | EstimatorName::Direct if settings.is_plain() => {
-            Job { scene, samplers, camera: &path, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
-        }
+        EstimatorName::Path | EstimatorName::Direct if settings.is_plain() => finish.observable(&run, &path, observe),
         EstimatorName::Path | EstimatorName::Direct => {
             let resampling = settings.direct_settings();
             let probes = resampling.probes(scene);
@@ -280,9 +281,7 @@ fn estimate_with<S: Scene + Sync>(
                 roulette,
                 first_event: FirstEvent::Any,
             };
-            let mut rendering =
-                Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                    .render(observe)?;
+            let mut rendering = finish.observable(&run, &camera, observe)?;
             if let Some(photons) = &photons {
                 rendering.rays += photons.rays();
                 rendering.preparation_seconds += photons.seconds();
@@ -294,8 +293,7 @@ fn estimate_with<S: Scene + Sync>(
             let probes = resampling.probes(scene);
             let direct = resampling.resampled(scene, samplers, probes.as_ref())?;
             let camera = resampling.restir(direct);
-            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
+            finish.other(&run, &camera, None::<&NoLightPaths>, observe)
         }
         EstimatorName::PhotonMap | EstimatorName::Sppm => {
             let resampling = settings.direct_settings();
@@ -304,17 +302,15 @@ fn estimate_with<S: Scene + Sync>(
             let direct = resampling.direct(settings.heuristic, choice.clone(), resampled);
             if settings.estimator == EstimatorName::Sppm {
                 let camera = settings.photons.progressive(scene, direct, choice, limits)?;
-                return Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                    .render(observe);
+                return finish.other(&run, &camera, None::<&NoLightPaths>, observe);
             }
             let camera = settings.photons.mapping(scene, direct, choice, limits)?;
-            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
+            finish.observable(&run, &camera, observe)
         }
         EstimatorName::Light => {
             path.first_event = FirstEvent::SpecularOnly;
             let light = LightTracer { choice, max_depth: settings.max_depth, roulette };
-            Job { scene, samplers, camera: &path, light: Some(&light), filter, budget, threads }.render(observe)
+            finish.other(&run, &path, Some(&light), observe)
         }
         EstimatorName::RobustIgi | EstimatorName::InstantRadiosity => {
             let drops = settings.estimator == EstimatorName::InstantRadiosity;
@@ -330,11 +326,9 @@ fn estimate_with<S: Scene + Sync>(
             let camera = Shared { estimator, sharing: settings.light_paths.sharing() };
             if settings.photons.caustics && !drops {
                 let camera = settings.photons.complement(scene, camera, limits)?;
-                return Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                    .render(observe);
+                return finish.other(&run, &camera, None::<&NoLightPaths>, observe);
             }
-            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
+            finish.observable(&run, &camera, observe)
         }
         EstimatorName::Bdpt => {
             let settings_of_paths = &settings.light_paths;
@@ -350,18 +344,17 @@ fn estimate_with<S: Scene + Sync>(
                 resampled: settings_of_paths.resampled_connections,
             };
             let camera = Shared { estimator, sharing: settings_of_paths.sharing() };
-            Job { scene, samplers, camera: &camera, light: None::<&NoLightPaths>, filter, budget, threads }
-                .render(observe)
+            finish.other(&run, &camera, None::<&NoLightPaths>, observe)
         }
         EstimatorName::Ao => {
             let ao = AmbientOcclusion { distance: settings.ao_distance };
-            Job { scene, samplers, camera: &ao, light: None::<&NoLightPaths>, filter, budget, threads }.render(observe)
+            finish.observable(&run, &ao, observe)
         }
     }
 }
 
 /// Traces the photons that tell which lights contribute, if they are asked for.
-pub(super) fn light_photons<S: Scene + Sync>(
+fn light_photons<S: Scene + Sync>(
     scene: &S,
     samplers: &impl SamplerFamily,
     settings: &RenderSettings,
