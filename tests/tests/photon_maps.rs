@@ -6,7 +6,7 @@ use std::ops::{ControlFlow, Range};
 
 use estimator_checks::{BatchMeans, Moments, Suite, Truth, slope_is};
 use lichtwerk::estimators::{
-    DirectLight, GuideScratch, ImportonGuidance, Maps, NextEvent, Onward, PathGuidance, PhotonMapping, PhotonView,
+    DirectLight, GuideScratch, ImportonGuidance, Maps, NextEvent, PathGuidance, PhotonMapping, PhotonView,
     ProgressivePhotons, Sharpness, Storing,
 };
 use lichtwerk::light_paths::LightPathSettings;
@@ -25,8 +25,8 @@ use scene_core::film::{Film, FilmError};
 use scene_core::glam::Vec3A;
 use scene_core::material::Material;
 use scene_core::{
-    Emitter, EmitterChoice, PowerChoice, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription, Spectrum,
-    Vertex,
+    Emitter, EmitterChoice, Onward, PowerChoice, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription,
+    Spectrum, Vertex,
 };
 
 static SUITE: Suite = Suite::with_share("workspace photon maps", 24, 2e-8);

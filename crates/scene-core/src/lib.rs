@@ -31,4 +31,4 @@ pub use ray::{Ray, SurfacePoint};
 #[cfg(feature = "reference")]
 pub use reference::{PowerChoice, ReferenceScene, SceneDescription, SceneError, UniformChoice};
 pub use traits::*;
-pub use walk::{RussianRoulette, WalkStart, WalkVertex, random_walk};
+pub use walk::{Onward, RussianRoulette, WalkStart, WalkVertex, guided_walk, random_walk};

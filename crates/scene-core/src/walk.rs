@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use qmc_sampling::Sampler;
 
 use crate::ray::Ray;
-use crate::traits::{Scene, Spectrum, TransportMode, Vertex};
+use crate::traits::{ScatterSample, Scene, Spectrum, TransportMode, Vertex};
 
 /// How a walk ends by chance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +80,30 @@ pub struct WalkVertex<'v, V, S> {
     pub scattered_diffusely: bool,
 }
 
+/// How a walk goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Onward<S> {
+    /// The direction. Its throughput is `f cos` over the density that it was drawn with; its density is the material's
+    /// own, which tells how sharp the bounce is.
+    pub sample: ScatterSample<S>,
+    /// `f cos` over the material's own density, which is what Russian roulette goes by: by the throughput, it would undo
+    /// what guidance does, and end many of the paths that were sent where they are wanted.
+    pub own: S,
+}
+
+impl<S: Spectrum> Onward<S> {
+    /// As the material has it: a direction by [`Vertex::sample`].
+    pub fn unguided<V: Vertex<Spectrum = S>>(
+        vertex: &V,
+        mode: TransportMode,
+        sampler: &mut impl Sampler,
+    ) -> Option<Self> {
+        let (lobe, [u, v]) = (sampler.next_1d(), sampler.next_2d());
+        let sample = vertex.sample([lobe, u, v], mode)?;
+        Some(Self { own: sample.throughput, sample })
+    }
+}
+
 /// Walks through the scene and shows every vertex to `visit`, with the flux that arrives there.
 ///
 /// The estimator `sum over vertices of throughput * W(vertex)` is the **collision estimator** of the measurement of
@@ -94,6 +118,18 @@ pub fn random_walk<'s, S: Scene>(
     scene: &'s S,
     start: WalkStart<S::Spectrum>,
     sampler: &mut impl Sampler,
+    visit: impl FnMut(WalkVertex<'_, S::Vertex<'s>, S::Spectrum>) -> ControlFlow<()>,
+) -> u32 {
+    guided_walk(scene, start, sampler, |vertex, sampler| Onward::unguided(vertex, start.mode, sampler), visit)
+}
+
+/// [`random_walk`] with directions by `scatter`, which may send it where it is wanted: unbiased if the expectation of the throughput in any solid
+/// angle is that of [`Vertex::sample`], and so is that of [`Onward::own`] over the material's own sampling.
+pub fn guided_walk<'s, S: Scene, R: Sampler>(
+    scene: &'s S,
+    start: WalkStart<S::Spectrum>,
+    sampler: &mut R,
+    mut scatter: impl FnMut(&S::Vertex<'s>, &mut R) -> Option<Onward<S::Spectrum>>,
     mut visit: impl FnMut(WalkVertex<'_, S::Vertex<'s>, S::Spectrum>) -> ControlFlow<()>,
 ) -> u32 {
     let WalkStart { mut ray, mut throughput, mode, max_length, roulette } = start;
@@ -116,15 +152,13 @@ pub fn random_walk<'s, S: Scene>(
             return length;
         }
         // Scatter.
-        let lobe = sampler.next_1d();
-        let [u, v] = sampler.next_2d();
-        let Some(sample) = vertex.sample([lobe, u, v], mode) else { return length };
+        let Some(Onward { sample, own }) = scatter(&vertex, sampler) else { return length };
         relative *= sample.throughput;
         if mode == TransportMode::Radiance {
             eta *= sample.eta;
         }
         // Survive.
-        let survival = roulette.survival_probability(length, sample.throughput, relative, eta);
+        let survival = roulette.survival_probability(length, own, relative, eta);
         if survival < 1.0 && sampler.next_1d() >= survival {
             return length;
         }

@@ -27,9 +27,9 @@ pub use light::LightTracer;
 pub use path::{FirstEvent, PathTracer};
 pub use photon_lights::PhotonLights;
 pub use photons::{
-    GuidanceTracing, GuideScratch, Importance, ImportonGuidance, ImportonTracing, MAX_LENGTH, Maps, Onward,
-    PathGuidance, PhotonCaustics, PhotonEye, PhotonMapping, PhotonTracing, PhotonView, ProgressivePhotons, Sharpness,
-    Storing, Unguided, WithCaustics,
+    GuidanceTracing, GuideScratch, Importance, ImportonGuidance, ImportonTracing, MAX_LENGTH, Maps, PathGuidance,
+    PhotonCaustics, PhotonEye, PhotonMapping, PhotonTracing, PhotonView, ProgressivePhotons, Sharpness, Storing,
+    Unguided, WithCaustics,
 };
 pub use resampled::{
     EnvironmentSampling, LightCandidate, LightPoint, LightSource, LightTarget, Place, PointTarget, ResampledDirect,

@@ -7,24 +7,13 @@ use photon_map::{
 };
 use qmc_sampling::{Sampler, SamplerFamily};
 use scene_core::{
-    Emitter, EmitterChoice, EmitterId, Ray, RayCounts, ScatterSample, Scene, Spectrum, TransportMode, Vertex,
+    Emitter, EmitterChoice, EmitterId, Onward, Ray, RayCounts, ScatterSample, Scene, Spectrum, TransportMode, Vertex,
 };
 
 use super::ImportonTracing;
 use super::importons::{Purpose, sorted};
 use super::maps::gather_point;
 use crate::render::PassContext;
-
-/// How a light path goes on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Onward<S> {
-    /// The direction. Its throughput is `f cos` over the density that it was drawn with; its density is the material's
-    /// own, which tells how sharp the bounce is.
-    pub sample: ScatterSample<S>,
-    /// `f cos` over the material's own density, which is what Russian roulette goes by: by the throughput, it would undo
-    /// what guidance does, and end many of the paths that were sent where they are wanted.
-    pub own: S,
-}
 
 /// How light paths begin and go on.
 ///
@@ -82,9 +71,7 @@ impl PathGuidance for Unguided {
     }
 
     fn scatter<V: Vertex>(&self, vertex: &V, (): &mut (), sampler: &mut impl Sampler) -> Option<Onward<V::Spectrum>> {
-        let (lobe, [u, v]) = (sampler.next_1d(), sampler.next_2d());
-        let sample = vertex.sample([lobe, u, v], TransportMode::Importance)?;
-        Some(Onward { own: sample.throughput, sample })
+        Onward::unguided(vertex, TransportMode::Importance, sampler)
     }
 }
 

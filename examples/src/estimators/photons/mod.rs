@@ -23,7 +23,7 @@ mod tracing;
 
 pub use caustics::{PhotonCaustics, WithCaustics};
 pub use eye::PhotonEye;
-pub use guidance::{GuidanceTracing, GuideScratch, ImportonGuidance, Onward, PathGuidance, Unguided};
+pub use guidance::{GuidanceTracing, GuideScratch, ImportonGuidance, PathGuidance, Unguided};
 pub use importons::{Importance, ImportonTracing};
 pub use mapping::PhotonMapping;
 pub use maps::{Maps, PhotonView};

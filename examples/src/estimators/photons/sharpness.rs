@@ -37,15 +37,6 @@ pub(super) struct Departure {
     is_diffuse: bool,
 }
 
-/// How the last direction was drawn.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LastDirection {
-    /// The material's density by solid angle.
-    pub(super) pdf_solid_angle: f32,
-    /// Whether it came from a Dirac delta.
-    pub(super) is_specular: bool,
-}
-
 impl Departure {
     pub(super) fn of<V: Vertex>(vertex: &V) -> Self {
         Self { normal: vertex.shading_normal(), is_diffuse: vertex.lambertian().is_some() }
@@ -86,25 +77,20 @@ impl Sharpness {
         self.may_be_glossy(vertex) && self.is_sharp(pdf(), vertex.shading_normal().dot(vertex.wo()))
     }
 
-    /// How a path was scattered before it arrived from `wo`, having left from `departure` in a direction that was
-    /// drawn so.
-    pub(super) fn bounce(&self, departure: Option<&Departure>, last: &LastDirection, wo: Vec3A) -> LastBounce {
-        match departure {
-            None => LastBounce::Emission,
-            Some(_) if last.is_specular => LastBounce::Specular,
-            Some(departure) if departure.is_diffuse => LastBounce::Diffuse,
-            Some(departure) => LastBounce::Glossy(roughness(last.pdf_solid_angle, departure.normal.dot(wo))),
-        }
-    }
-
-    /// The same for a walk.
+    /// How the light path was scattered before it arrived, having left from `departure`.
     pub(super) fn last_bounce<V: Vertex>(
         &self,
         departure: Option<&Departure>,
         walk: &WalkVertex<'_, V, V::Spectrum>,
     ) -> LastBounce {
-        let last = LastDirection { pdf_solid_angle: walk.pdf_solid_angle, is_specular: walk.after_specular };
-        self.bounce(departure, &last, walk.vertex.wo())
+        match departure {
+            None => LastBounce::Emission,
+            Some(_) if walk.after_specular => LastBounce::Specular,
+            Some(departure) if departure.is_diffuse => LastBounce::Diffuse,
+            Some(departure) => {
+                LastBounce::Glossy(roughness(walk.pdf_solid_angle, departure.normal.dot(walk.vertex.wo())))
+            }
+        }
     }
 }
 

@@ -5,10 +5,12 @@ use core::ops::{ControlFlow, Range};
 use photon_map::{CausticRule, Deposition, MapPartition, Photon, PhotonMaps};
 use qmc_sampling::{Sampler, SamplerFamily};
 use rayon::prelude::*;
-use scene_core::{Counting, EmitterChoice, RayCounts, RussianRoulette, Scene, Spectrum, Vertex};
+use scene_core::{
+    Counting, EmitterChoice, RayCounts, RussianRoulette, Scene, Spectrum, TransportMode, Vertex, WalkStart, guided_walk,
+};
 
-use super::guidance::{Onward, PathGuidance, Unguided};
-use super::sharpness::{Departure, LastDirection, Sharpness};
+use super::guidance::{PathGuidance, Unguided};
+use super::sharpness::{Departure, Sharpness};
 use crate::render::PassContext;
 
 /// Light paths of a photon map.
@@ -56,41 +58,29 @@ impl<C: EmitterChoice, G: PathGuidance> PhotonTracing<C, G> {
         sampler: &mut impl Sampler,
         mut arrive: impl FnMut(Photon<[f32; 3]>) -> ControlFlow<()>,
     ) {
-        let Some((mut ray, mut throughput)) = self.guidance.emit(scene, &self.choice, scratch, sampler) else { return };
-        let mut relative = S::Spectrum::splat(1.0);
-        let (mut departure, mut last) = (None, LastDirection::default());
-        let longest = self.max_length.min(MAX_LENGTH);
-        for length in 1..=longest {
-            let Some(vertex) = scene.intersect(&ray) else { return };
-            if vertex.is_connectible() {
-                let (position, wi) = (vertex.point().position.to_array(), vertex.wo().to_array());
-                let photon = Photon::new(position, wi, throughput.to_rgb()).from_light(length);
-                let bounce = self.sharpness.bounce(departure.as_ref(), &last, vertex.wo());
-                if arrive(CausticRule::label(&self.sharpness.rule, photon, bounce)).is_break() {
-                    return;
-                }
-            }
-            if length == longest {
-                return;
-            }
-
-            // Scatter.
-            let Some(Onward { sample, own }) = self.guidance.scatter(&vertex, scratch, sampler) else { return };
-            relative *= sample.throughput;
-            // Survive.
-            let survival = self.roulette.survival_probability(length, own, relative, 1.0);
-            if survival < 1.0 && sampler.next_1d() >= survival {
-                return;
-            }
-            throughput *= sample.throughput * (1.0 / survival);
-            relative *= S::Spectrum::splat(1.0 / survival);
-            if throughput.is_black() || !throughput.is_finite() {
-                return;
-            }
-            last = LastDirection { pdf_solid_angle: sample.pdf_solid_angle, is_specular: sample.is_specular };
-            departure = Some(Departure::of(&vertex));
-            ray = vertex.spawn_ray(sample.wi);
-        }
+        let Some((ray, throughput)) = self.guidance.emit(scene, &self.choice, scratch, sampler) else { return };
+        let start = WalkStart {
+            ray,
+            throughput,
+            mode: TransportMode::Importance,
+            max_length: self.max_length.min(MAX_LENGTH),
+            roulette: self.roulette,
+        };
+        let scatter = |vertex: &S::Vertex<'_>, sampler: &mut _| self.guidance.scatter(vertex, scratch, sampler);
+        let mut departure: Option<Departure> = None;
+        guided_walk(scene, start, sampler, scatter, |walk| {
+            let vertex = walk.vertex;
+            let flow = if vertex.is_connectible() {
+                let last = self.sharpness.last_bounce(departure.as_ref(), &walk);
+                let photon =
+                    Photon::new(vertex.point().position.to_array(), vertex.wo().to_array(), walk.throughput.to_rgb());
+                arrive(CausticRule::label(&self.sharpness.rule, photon.from_light(walk.length), last))
+            } else {
+                ControlFlow::Continue(())
+            };
+            departure = Some(Departure::of(vertex));
+            flow
+        });
     }
 }
 
