@@ -58,7 +58,7 @@ fn blocks(scene: &Balls, by_light: bool) -> Vec<Moments> {
         let light = by_light.then_some(&light);
         let (filter, budget) = (Filter::BOX, Budget::Samples(8));
         let job = Job { scene, samplers: &samplers, camera: &camera, light, filter, budget, threads: 1 };
-        let rendering = job.render(|_| ControlFlow::Continue(())).unwrap();
+        let rendering = job.render(&mut |_| ControlFlow::Continue(())).unwrap();
         let image = rendering.film.develop(rendering.light_paths).rgb().unwrap();
         let half = SIZE as usize / BLOCKS;
         for (block, moments) in moments.iter_mut().enumerate() {

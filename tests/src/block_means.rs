@@ -5,8 +5,8 @@ use lichtwerk::estimators::NoLightPaths;
 use lichtwerk::program::{RenderSettings, estimate};
 use lichtwerk::render::{Budget, CameraPass, Job, Rendering};
 use qmc_sampling::SamplerFamily;
-use scene_core::Scene;
 use scene_core::film::Filter;
+use scene_core::{ReferenceScene, Scene};
 
 /// How much to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl Effort {
 ///
 /// # Panics
 /// If the image cannot be rendered, or has samples that are not finite.
-pub fn block_means<S: Scene + Sync>(name: &str, scene: &S, settings: &RenderSettings, effort: Effort) -> BatchMeans {
+pub fn block_means(name: &str, scene: &ReferenceScene, settings: &RenderSettings, effort: Effort) -> BatchMeans {
     means_of(name, effort, |seed| {
         let settings = RenderSettings { seed, threads: 1, budget: Budget::Samples(effort.samples), ..settings.clone() };
         estimate(scene, &settings, |_| std::ops::ControlFlow::Continue(())).expect("a scene with a size")
@@ -83,7 +83,7 @@ pub fn render_through<S: Scene + Sync>(
 ) -> Rendering {
     let budget = Budget::Samples(samples);
     let job = Job { scene, samplers, camera, light: None::<&NoLightPaths>, filter, budget, threads: 1 };
-    job.render(|_| std::ops::ControlFlow::Continue(())).expect("a scene with a size")
+    job.render(&mut |_| std::ops::ControlFlow::Continue(())).expect("a scene with a size")
 }
 
 /// The means of the blocks of `block * block` pixels and of the whole image, channel by channel.

@@ -3,29 +3,35 @@
 
 use estimator_checks::{BatchMeans, Suite};
 use lichtwerk::program::RenderSettings;
-use scene_core::Scene;
+use scene_core::ReferenceScene;
 
 use crate::{Effort, block_means};
 
 /// A scene with an image that is known to be right, such as that by path tracing.
 #[derive(Debug)]
-pub struct Truth<S> {
+pub struct Truth {
     suite: &'static Suite,
     test: String,
     /// The scene.
-    pub scene: S,
+    pub scene: ReferenceScene,
     /// Its image.
     pub means: BatchMeans,
     /// With what effort that was rendered, and others will be.
     pub effort: Effort,
 }
 
-impl<S: Scene + Sync> Truth<S> {
+impl Truth {
     /// Renders the scene with settings that are known to be right. All seeds follow from the name of the test.
     ///
     /// # Panics
     /// If it cannot be rendered.
-    pub fn new(suite: &'static Suite, test: &str, scene: S, settings: &RenderSettings, effort: Effort) -> Self {
+    pub fn new(
+        suite: &'static Suite,
+        test: &str,
+        scene: ReferenceScene,
+        settings: &RenderSettings,
+        effort: Effort,
+    ) -> Self {
         let means = block_means(&format!("{test}: path"), &scene, settings, effort);
         Self { suite, test: test.to_owned(), scene, means, effort }
     }

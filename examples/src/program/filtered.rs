@@ -1,6 +1,5 @@
 //! `lichtwerk render --filter psf`: estimators whose paths are filtered.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use clap::ValueEnum;
@@ -14,7 +13,7 @@ use super::render::{EstimatorName, RenderSettings};
 use crate::estimators::{LightEstimator, NoLightPaths};
 use crate::filtering::{Filtered, Observable, Tracing};
 use crate::filters::{FilterError, FilterSettings, PathFilterName};
-use crate::render::{CameraPass, Progress, RenderError, Rendering};
+use crate::render::{CameraPass, Observe, RenderError, Rendering};
 
 /// Refuses what does not go together with a filter.
 pub(super) fn check(settings: &RenderSettings) -> Result<(), FilterError> {
@@ -38,7 +37,7 @@ impl Finish for PathFilterName {
         &self,
         run: &Run<'_, S, F>,
         camera: &(impl CameraPass + Observable),
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        observe: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         let (settings, sensor) = (run.settings, run.scene.sensor());
         let mut filtering = settings.filtering.clone();
@@ -63,7 +62,7 @@ impl Finish for PathFilterName {
         _: &Run<'_, S, F>,
         _: &impl CameraPass,
         _: Option<&impl LightEstimator>,
-        _: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        _: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         Err(FilterError::Estimator.into())
     }

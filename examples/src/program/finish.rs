@@ -1,14 +1,12 @@
 //! What becomes of the estimator that the settings name.
 
-use std::ops::ControlFlow;
-
 use qmc_sampling::SamplerFamily;
 use scene_core::Scene;
 
 use super::render::RenderSettings;
 use crate::estimators::{LightEstimator, NoLightPaths};
 use crate::filtering::Observable;
-use crate::render::{CameraPass, Job, Progress, RenderError, Rendering};
+use crate::render::{CameraPass, Job, Observe, RenderError, Rendering};
 
 /// A scene that is to be rendered.
 pub(super) struct Run<'a, S, F> {
@@ -23,7 +21,7 @@ impl<S: Scene + Sync, F: SamplerFamily> Run<'_, S, F> {
         &self,
         camera: &impl CameraPass,
         light: Option<&impl LightEstimator>,
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        observe: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         let (scene, samplers) = (self.scene, self.samplers);
         let RenderSettings { filter, budget, threads, .. } = *self.settings;
@@ -38,7 +36,7 @@ pub(super) trait Finish {
         &self,
         run: &Run<'_, S, F>,
         camera: &(impl CameraPass + Observable),
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        observe: Observe<'_>,
     ) -> Result<Rendering, RenderError>;
 
     /// With any other.
@@ -47,7 +45,7 @@ pub(super) trait Finish {
         run: &Run<'_, S, F>,
         camera: &impl CameraPass,
         light: Option<&impl LightEstimator>,
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        observe: Observe<'_>,
     ) -> Result<Rendering, RenderError>;
 }
 
@@ -59,7 +57,7 @@ impl Finish for Plain {
         &self,
         run: &Run<'_, S, F>,
         camera: &(impl CameraPass + Observable),
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        observe: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         run.render(camera, None::<&NoLightPaths>, observe)
     }
@@ -69,7 +67,7 @@ impl Finish for Plain {
         run: &Run<'_, S, F>,
         camera: &impl CameraPass,
         light: Option<&impl LightEstimator>,
-        observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
+        observe: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         run.render(camera, light, observe)
     }

@@ -14,7 +14,7 @@ use clap::Parser;
 
 pub use arguments::{Arguments, Command, DiffArguments, ExperimentArguments, RenderArguments, ShowcaseArguments};
 pub use load::{LoadError, load_description};
-pub use render::{EstimatorName, RenderSettings, estimate, render_to_image};
+pub use render::{EstimatorName, RenderSettings, estimate, estimate_in, render_to_image};
 
 pub use crate::samplers::SamplerName;
 

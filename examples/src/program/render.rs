@@ -24,7 +24,7 @@ use crate::output::{
     Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
 };
 use crate::photons::{PathLimits, PhotonSettings};
-use crate::render::{Budget, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
+use crate::render::{Budget, Observe, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
 use crate::resampling::{AnyDirect, DirectName, ResamplingSettings};
 use crate::samplers::{AnyFamily, SamplerName};
 
@@ -211,10 +211,32 @@ impl RenderSettings {
 ///
 /// # Errors
 /// If the image has no pixels or too many (for the sampler), or threads cannot be started.
-pub fn estimate<S: Scene + Sync>(
+pub fn estimate(
+    scene: &ReferenceScene,
+    settings: &RenderSettings,
+    mut observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
+) -> Result<Rendering, RenderError> {
+    estimate_here(scene, settings, &mut observe)
+}
+
+/// All estimators with the crate's own scene are compiled here, once: whoever calls a generic function compiles it again.
+#[inline(never)]
+fn estimate_here(
+    scene: &ReferenceScene,
+    settings: &RenderSettings,
+    observe: Observe<'_>,
+) -> Result<Rendering, RenderError> {
+    estimate_in(scene, settings, observe)
+}
+
+/// [`estimate`] in a scene of any kind. Takes a minute to compile.
+///
+/// # Errors
+/// As for [`estimate`].
+pub fn estimate_in<S: Scene + Sync>(
     scene: &S,
     settings: &RenderSettings,
-    observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
+    observe: Observe<'_>,
 ) -> Result<Rendering, RenderError> {
     let family = |name| {
         let paths = match settings.budget {
@@ -243,7 +265,7 @@ fn estimate_with<S: Scene + Sync>(
     settings: &RenderSettings,
     samplers: &impl SamplerFamily,
     finish: &impl Finish,
-    observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
+    observe: Observe<'_>,
 ) -> Result<Rendering, RenderError> {
     if settings.estimator != EstimatorName::Bdpt && !settings.heuristic.is_of_densities() {
         return Err(RenderError::Heuristic);

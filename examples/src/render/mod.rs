@@ -125,6 +125,9 @@ pub enum RenderError {
     },
 }
 
+/// What is told after each pass, and may stop. A trait object, for one copy of the renderer is enough.
+pub type Observe<'a> = &'a mut (dyn FnMut(Progress<'_>) -> ControlFlow<()> + Send);
+
 /// So many threads; zero is one per core.
 ///
 /// # Errors
@@ -145,10 +148,7 @@ where
     ///
     /// # Errors
     /// If the image has no pixels or too many, or threads cannot be started.
-    pub fn render(
-        &self,
-        mut observe: impl FnMut(Progress<'_>) -> ControlFlow<()> + Send,
-    ) -> Result<Rendering, RenderError> {
+    pub fn render(&self, observe: Observe<'_>) -> Result<Rendering, RenderError> {
         let [width, height] = self.scene.sensor().resolution();
         let mut film = Film::new(width, height)?;
         let pool = thread_pool(self.threads)?;

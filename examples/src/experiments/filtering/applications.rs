@@ -38,7 +38,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
             EstimatorName::RobustIgi => EstimatorName::Path,
             estimator => estimator,
         };
-        let reference = setup.reference(context, context.effort(512, 4096))?;
+        let reference = setup.reference(context, context.effort(512, 2048))?;
         setup.settings.estimator = estimator;
         let mut variants = [
             Variant::new("input", setup.settings.clone()),

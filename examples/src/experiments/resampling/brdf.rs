@@ -101,7 +101,7 @@ fn pictures(context: &Context, setup: &Setup) -> Result<(), Failure> {
             budget: Budget::Samples(context.effort(4, 16)),
             threads: context.threads,
         };
-        let rendering = job.render(|_| std::ops::ControlFlow::Continue(()))?;
+        let rendering = job.render(&mut |_| std::ops::ControlFlow::Continue(()))?;
         context.save_picture(&format!("figure-5-m{candidates}"), &rendering.film.develop(0), 0.0)?;
     }
     Ok(())

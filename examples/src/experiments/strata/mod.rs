@@ -34,7 +34,7 @@ fn render(setup: &Setup, camera: &impl CameraPass, samples: u64, seed: u64) -> R
         budget: Budget::Samples(samples),
         threads: setup.settings.threads,
     };
-    Ok(job.render(|_| ControlFlow::Continue(()))?)
+    Ok(job.render(&mut |_| ControlFlow::Continue(()))?)
 }
 
 /// What the renderings of a row cost, and their means.

@@ -13,8 +13,8 @@ use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
 use lichtwerk::render::Budget;
 use lichtwerk_tests::{Effort, assets, block_means, scenes};
 use qmc_sampling::Interleaved;
+use scene_core::ReferenceScene;
 use scene_core::builtin::Builtin;
-use scene_core::{ReferenceScene, Scene};
 use vpl_gi::Threshold;
 
 /// Quick and long forms count: both may run.
@@ -43,7 +43,7 @@ fn bdpt(heuristic: AnyHeuristic, without_lens: bool, interleaved: bool) -> Rende
 }
 
 /// Every heuristic; both sets of techniques and both ways of sharing, all or in turn.
-fn equals_path<S: Scene + Sync>(test: &str, scene: &S, effort: Effort, heuristics: &[AnyHeuristic], all: bool) {
+fn equals_path(test: &str, scene: &ReferenceScene, effort: Effort, heuristics: &[AnyHeuristic], all: bool) {
     let truth = block_means(&format!("{test}: path"), scene, &path(), effort);
     for (k, &heuristic) in heuristics.iter().enumerate() {
         for (turn, (without_lens, interleaved)) in

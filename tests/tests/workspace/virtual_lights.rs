@@ -6,15 +6,16 @@
 use std::ops::ControlFlow;
 
 use estimator_checks::Suite;
+use lichtwerk::estimators::VirtualLights;
 use lichtwerk::light_paths::{LightPathSettings, PartitionName};
 use lichtwerk::program::{EstimatorName, RenderSettings, estimate};
-use lichtwerk::render::{Budget, Rendering};
+use lichtwerk::render::{Budget, Rendering, Shared};
 use lichtwerk_tests::planted::AllDiffuse;
-use lichtwerk_tests::{Effort, Truth, assets, block_means, both_forms, scenes};
-use qmc_sampling::Interleaved;
+use lichtwerk_tests::{Effort, Truth, assets, both_forms, means_of, render_by, scenes};
+use qmc_sampling::{Interleaved, OwenSobol};
 use scene_core::builtin::Builtin;
-use scene_core::{ReferenceScene, Scene};
-use vpl_gi::{ShadowRays, Threshold};
+use scene_core::{PowerChoice, ReferenceScene, RussianRoulette, Scene};
+use vpl_gi::{LightTracing, Residual, RobustIgi, ShadowRays, Threshold};
 
 /// Quick and long forms count: both may run.
 static SUITE: Suite = Suite::with_share("workspace virtual lights", 200, 3e-8);
@@ -39,12 +40,12 @@ fn robust(threshold: f32, partition: PartitionName, interleaved: bool) -> Render
 }
 
 /// A scene with its image by path tracing.
-fn by_path<S: Scene + Sync>(test: &str, scene: S, effort: Effort) -> Truth<S> {
+fn by_path(test: &str, scene: ReferenceScene, effort: Effort) -> Truth {
     Truth::new(&SUITE, test, scene, &path(), effort)
 }
 
 /// Every threshold, hard and soft, with light paths of one's own and shared; in the long form these two in turn.
-fn equal_everywhere<S: Scene + Sync>(truth: &Truth<S>, thresholds: &[f32]) {
+fn equal_everywhere(truth: &Truth, thresholds: &[f32]) {
     let both = is_quick(truth.effort);
     for (k, &threshold) in thresholds.iter().enumerate() {
         for partition in [PartitionName::Hard, PartitionName::Soft] {
@@ -61,7 +62,7 @@ fn is_quick(effort: Effort) -> bool {
 }
 
 /// The quick forms take fewer thresholds where the scene is not the Cornell box.
-fn equal_on<S: Scene + Sync>(test: &str, scene: S, effort: Effort) {
+fn equal_on(test: &str, scene: ReferenceScene, effort: Effort) {
     let thresholds: &[f32] = if is_quick(effort) { &[10.0] } else { &THRESHOLDS };
     equal_everywhere(&by_path(test, scene, effort), thresholds);
 }
@@ -129,12 +130,27 @@ fn planted_bugs_are_rejected() {
     // Rays that end at the partition's reach miss the glass behind.
     let truth = by_path("planted in glass", scenes::build(scenes::glass_ball()), Effort::QUICK);
     let settings = robust(1000.0, PartitionName::Hard, true);
-    let wrong =
-        block_means("rays too short", &AllDiffuse(scenes::build(scenes::glass_ball())), &settings, truth.effort);
+    let scene = AllDiffuse(scenes::build(scenes::glass_ball()));
+    let wrong = means_of("rays too short", truth.effort, |seed| {
+        let RenderSettings { max_depth, light_paths, rr_depth, .. } = &settings;
+        let eye = RobustIgi {
+            max_depth: *max_depth,
+            roulette: RussianRoulette::PathThroughput { from_length: rr_depth - 1 },
+            ..light_paths.robust(&scene, Residual::Scatter).unwrap()
+        };
+        let light = LightTracing {
+            choice: PowerChoice::new(scene.emitters()),
+            max_length: max_depth - 2,
+            roulette: RussianRoulette::LocalAlbedo { from_length: 0 },
+        };
+        let estimator = VirtualLights { eye, light, paths: light_paths.light_paths, caustics: None };
+        let camera = Shared { estimator, sharing: light_paths.sharing() };
+        render_by(&scene, &camera, &OwenSobol::new(seed), truth.effort.samples)
+    });
     println!("{}", truth.means.agrees_with(SUITE.twin("rays too short"), &wrong).expect_reject());
 }
 
-fn render<S: Scene + Sync>(scene: &S, settings: &RenderSettings, threads: usize) -> Rendering {
+fn render(scene: &ReferenceScene, settings: &RenderSettings, threads: usize) -> Rendering {
     let settings = RenderSettings { threads, budget: Budget::Samples(4), ..settings.clone() };
     estimate(scene, &settings, |_| ControlFlow::Continue(())).unwrap()
 }
