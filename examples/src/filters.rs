@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use path_space_filter::{
     AlbedoDifference, Demodulated, HitDistance, JitteredHash, NormalCone, PathSpaceFilter, Radius, RadiusError, Search,
-    SimilarityError, ViewCone,
+    SimilarTime, SimilarityError, ViewCone,
 };
 use scene_core::Sensor;
 
@@ -99,6 +99,9 @@ pub struct FilterSettings {
     /// Largest difference between the lengths of rays into the hemisphere that are alike [default: any].
     #[arg(long, value_name = "LENGTH")]
     pub filter_hit_distance: Option<f32>,
+    /// Largest difference in time of vertices that are alike: [`View::time`](crate::filtering::View::time). One image has one time.
+    #[arg(skip)]
+    pub filter_time: Option<f32>,
     /// Only vertices that see the same point lights are alike; takes a visibility ray for each.
     #[arg(long)]
     pub filter_visibility: bool,
@@ -133,6 +136,7 @@ impl Default for FilterSettings {
             filter_as_stored: false,
             filter_view: None,
             filter_hit_distance: None,
+            filter_time: None,
             filter_visibility: false,
             filter_roughness: 0.05,
             filter_vertices: 1,
@@ -173,7 +177,7 @@ impl FilterSettings {
             albedo: self.filter_albedo.map(AlbedoDifference::new).transpose()?,
             view: self.filter_view.map(ViewCone::new).transpose()?,
             hit_distance: self.filter_hit_distance.map(HitDistance::new).transpose()?,
-            time: None,
+            time: self.filter_time.map(SimilarTime::new).transpose()?,
             visibility: self.filter_visibility,
         })
     }
@@ -189,8 +193,12 @@ impl FilterSettings {
                 "--filter-extra samples have no ray for --filter-hit-distance to compare",
             ));
         }
-        if name == PathFilterName::PsfHash && (alike.view.is_some() || alike.hit_distance.is_some()) {
-            return Err(FilterError::Setting("--filter-view and --filter-hit-distance are for psf, not for psf-hash"));
+        if name == PathFilterName::PsfHash
+            && (alike.view.is_some() || alike.hit_distance.is_some() || alike.time.is_some())
+        {
+            return Err(FilterError::Setting(
+                "--filter-view, --filter-hit-distance and --filter-time are for psf, not for psf-hash",
+            ));
         }
         let modulation = match self.filter_as_stored {
             true => AnyModulation::AsStored,

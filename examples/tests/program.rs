@@ -211,6 +211,39 @@ fn light_paths_have_options() {
 }
 
 #[test]
+fn frames_and_eyes_are_rendered_together() {
+    let folder = TempDir::new().unwrap();
+    let frames = |more: &[&'static str]| {
+        let two = ["frames", "cornell-box", "cornell-box", "--size", "8x6", "--spp", "3", "--max-depth", "2"];
+        [&two[..], more].concat()
+    };
+    succeeds(folder.path(), &frames(&["--stereo", "0.02", "--filter-time", "0.5", "--out", "pairs"]));
+    let of = |eye: &str| ["exr", "png"].map(|end| format!("cornell-box-{eye}.{end}"));
+    let expected: Vec<String> = ["000-left", "000-right", "001-left", "001-right"].iter().flat_map(|e| of(e)).collect();
+    assert_eq!(names(&folder.path().join("pairs")), expected);
+    let read = |name: &str| LayeredImage::read_exr(&folder.path().join(name)).unwrap();
+    let mean = |name: &str| {
+        let rgb = read(name).rgb().unwrap();
+        rgb.iter().flatten().sum::<f32>() / rgb.len() as f32
+    };
+    // The lamp and the boxes are elsewhere for the other eye.
+    assert_ne!(read("pairs/cornell-box-000-left.exr").rgb(), read("pairs/cornell-box-000-right.exr").rgb());
+
+    succeeds(folder.path(), &frames(&["--blur", "--filter", "psf-hash", "--out", "blur"]));
+    assert_eq!(names(&folder.path().join("blur")), of("blur"));
+    succeeds(folder.path(), &frames(&["--out", "each", "--filter", "psf-hash"]));
+    let [whole, a, b] = ["blur/cornell-box-blur.exr", "each/cornell-box-000.exr", "each/cornell-box-001.exr"].map(mean);
+    assert!((whole / (0.5 * (a + b)) - 1.0).abs() < 1e-4, "{whole} is not the mean of {a} and {b}");
+    assert_eq!(read("blur/cornell-box-blur.exr").attribute("spp").and_then(|spp| spp.as_u64()), Some(6));
+
+    fails(folder.path(), &["frames", "cornell-box", "interior"], &["interior", "--size"]);
+    fails(folder.path(), &frames(&["--estimator", "light"]), &["path, direct and ao"]);
+    fails(folder.path(), &frames(&["--filter", "psf-hash", "--filter-time", "1"]), &["--filter-time"]);
+    fails(folder.path(), &frames(&["--filter-extra", "1"]), &["--filter-extra"]);
+    fails(folder.path(), &["frames", "no-such-scene"], &["no-such-scene"]);
+}
+
+#[test]
 fn diff_compares_two_images() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

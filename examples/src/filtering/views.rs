@@ -1,5 +1,7 @@
 //! Several images at once, whose vertices average each other.
 
+use std::ops::ControlFlow;
+
 use path_space_filter::PathFilter;
 use qmc_sampling::SamplerFamily;
 use scene_core::film::{Film, FilmError, Filter};
@@ -24,7 +26,7 @@ pub struct View<'a, S, E> {
 /// Renders several views of a scene together: a stereo pair, the frames of an animation, or points in time whose images are averaged to motion blur. Vertices are shared
 /// between all of them; a weight of proximity in time keeps apart what has moved.
 ///
-/// `batches` of `batch` samples per pixel each. Returns the images, and the rays traced.
+/// `batches` of `batch` samples per pixel each, until `observe`, which is told the number of the next batch, breaks. Returns the images, and the rays traced.
 ///
 /// # Errors
 /// If an image has no pixels, or too many.
@@ -35,6 +37,7 @@ pub fn render_views<S: Scene + Sync, F: SamplerFamily, E: Observable>(
     selection: Selection,
     batches: core::ops::Range<u64>,
     batch: u64,
+    observe: &mut (dyn FnMut(u64) -> ControlFlow<()> + Send),
 ) -> Result<(Vec<Film>, RayCounts), FilmError> {
     let film = |view: &View<'_, S, E>| {
         let [width, height] = view.scene.sensor().resolution();
@@ -67,6 +70,9 @@ pub fn render_views<S: Scene + Sync, F: SamplerFamily, E: Observable>(
             first += traced.vertices.len();
             let radiances: Vec<[f32; 3]> = traced.radiance(own).collect();
             add_to_film(film, traced, &radiances);
+        }
+        if observe(number + 1).is_break() {
+            break;
         }
     }
     Ok((films, rays))

@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
-use crate::filters::FilterSettings;
+use crate::filters::{FilterSettings, PathFilterName};
 use crate::light_paths::LightPathSettings;
 use crate::light_photons::LightPhotonSettings;
 use crate::photons::PhotonSettings;
@@ -30,6 +30,8 @@ pub enum Command {
     Showcase(ShowcaseArguments),
     /// Render a scene.
     Render(Box<RenderArguments>),
+    /// Render frames, stereo pairs or motion blur, whose paths are filtered together.
+    Frames(Box<FramesArguments>),
     /// Compare two images: MSE, relative MSE, MRSE, FLIP, ratio of the means.
     Diff(DiffArguments),
     /// Measure what a paper claims, and write report.json.
@@ -148,6 +150,56 @@ pub struct RenderArguments {
     /// Go on where this path space filtered image stopped, and write the mean of both.
     #[arg(long = "continue", value_name = "IMAGE.exr", requires = "filter", help_heading = "Path space filter")]
     pub continued: Option<PathBuf>,
+}
+
+/// Arguments of `frames`.
+#[derive(Clone, Debug, Args)]
+pub struct FramesArguments {
+    /// The frames in order: builtin scenes or scene files, all of one size.
+    #[arg(required = true)]
+    pub scenes: Vec<String>,
+    /// Two images of each frame, for eyes so far apart (in units of the scene).
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = parse_positive)]
+    pub stereo: Option<f64>,
+    /// The mean of all frames in place of each: motion blur.
+    #[arg(long)]
+    pub blur: bool,
+    /// What adds up the light: path, direct or ao.
+    #[arg(long, value_enum, default_value_t)]
+    pub estimator: EstimatorName,
+    /// How paths are filtered.
+    #[arg(long, value_enum, default_value = "psf")]
+    pub filter: PathFilterName,
+    /// Largest number of frames between vertices that are alike [default: any].
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = parse_positive)]
+    pub filter_time: Option<f64>,
+    /// Samples per pixel of each image.
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    pub spp: u64,
+    /// Size in pixels, as WIDTHxHEIGHT [default: the scenes'].
+    #[arg(long, value_parser = parse_size)]
+    pub size: Option<[u32; 2]>,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Number of threads; 0 is one per core.
+    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
+    pub threads: usize,
+    /// Segments per path; -1 is unlimited [default: unlimited].
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_depth)]
+    pub max_depth: Option<u32>,
+    /// Distance up to which `ao` looks for occluders [default: a tenth of the scene's radius].
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
+    pub ao_distance: Option<f64>,
+    /// Folder for the images.
+    #[arg(long, default_value = "out")]
+    pub out: PathBuf,
+    /// Exposure of PNG files, in stops.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Path space filtering.
+    #[command(flatten)]
+    pub filtering: FilterSettings,
 }
 
 /// Arguments of `diff`.

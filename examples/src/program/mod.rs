@@ -5,6 +5,7 @@ mod diff;
 mod experiment;
 mod filtered;
 mod finish;
+mod frames;
 mod list;
 mod load;
 mod render;
@@ -12,7 +13,9 @@ mod showcase;
 
 use clap::Parser;
 
-pub use arguments::{Arguments, Command, DiffArguments, ExperimentArguments, RenderArguments, ShowcaseArguments};
+pub use arguments::{
+    Arguments, Command, DiffArguments, ExperimentArguments, FramesArguments, RenderArguments, ShowcaseArguments,
+};
 pub use load::{LoadError, load_description};
 pub use render::{EstimatorName, RenderSettings, estimate, estimate_in, render_to_image};
 
@@ -50,6 +53,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         None => showcase::run(&ShowcaseArguments::default()),
         Some(Command::Showcase(arguments)) => showcase::run(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments),
+        Some(Command::Frames(arguments)) => frames::run(&arguments),
         Some(Command::Diff(arguments)) => diff::run(&arguments),
         Some(Command::Experiment(arguments)) => experiment::run(&arguments),
         Some(Command::List) => list::run(),

@@ -182,6 +182,21 @@ impl RenderSettings {
         settings
     }
 
+    /// Path tracing with next event estimation.
+    pub fn path_tracer<S: Scene>(&self, scene: &S) -> PathTracer<NextEvent<AnyHeuristic, AnyChoice>, OwnSampling> {
+        PathTracer {
+            direct: NextEvent { heuristic: self.heuristic, choice: AnyChoice::new(self.lights, scene.emitters()) },
+            scattering: OwnSampling,
+            max_depth: self.longest(),
+            roulette: self.roulette(),
+            first_event: FirstEvent::Any,
+        }
+    }
+
+    fn roulette(&self) -> RussianRoulette {
+        RussianRoulette::PathThroughput { from_length: self.rr_depth.saturating_sub(1) }
+    }
+
     /// Path tracing with the scene's own filter and depth.
     pub fn new(budget: Budget) -> Self {
         Self {
@@ -271,15 +286,9 @@ fn estimate_with<S: Scene + Sync>(
         return Err(RenderError::Heuristic);
     }
     let choice = AnyChoice::new(settings.lights, scene.emitters());
-    let roulette = RussianRoulette::PathThroughput { from_length: settings.rr_depth.saturating_sub(1) };
+    let roulette = settings.roulette();
     let run = Run { scene, samplers, settings };
-    let mut path = PathTracer {
-        direct: NextEvent { heuristic: settings.heuristic, choice: choice.clone() },
-        scattering: OwnSampling,
-        max_depth: settings.longest(),
-        roulette,
-        first_event: FirstEvent::Any,
-    };
+    let mut path = settings.path_tracer(scene);
     let resampling = &settings.resampling;
     let limits = PathLimits { max_depth: settings.max_depth, roulette };
     match settings.estimator {

@@ -179,16 +179,8 @@ fn ambient_occlusion_has_a_range() {
 
 /// Light tracing as by [`light`], with light paths that scatter as if they carried radiance.
 fn light_in_one_mode(scene: &OneMode<ReferenceScene>, seed: u64) -> Rendering {
-    let choice = AnyChoice::new(LightSelection::Power, scene.emitters());
-    let RenderSettings { heuristic, max_depth, rr_depth, .. } = light();
-    let roulette = RussianRoulette::PathThroughput { from_length: rr_depth - 1 };
-    let camera = PathTracer {
-        direct: NextEvent { heuristic, choice: choice.clone() },
-        scattering: OwnSampling,
-        max_depth,
-        roulette,
-        first_event: FirstEvent::SpecularOnly,
-    };
+    let camera = PathTracer { first_event: FirstEvent::SpecularOnly, ..light().path_tracer(scene) };
+    let (choice, max_depth, roulette) = (camera.direct.choice.clone(), camera.max_depth, camera.roulette);
     let job = Job {
         scene,
         samplers: &OwenSobol::new(seed),

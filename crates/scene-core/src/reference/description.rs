@@ -117,6 +117,16 @@ pub struct CameraDescription {
     pub height: u32,
 }
 
+impl CameraDescription {
+    /// The same camera moved to the right of its image by a length in units of the world, as the other eye of a pair.
+    #[must_use]
+    pub fn moved_right(&self, length: f32) -> Self {
+        let mut moved = self.clone();
+        moved.to_world.translation -= self.to_world.matrix3.x_axis.normalize_or_zero() * length;
+        moved
+    }
+}
+
 /// Everything a scene is made of.
 #[derive(Clone, Debug)]
 pub struct SceneDescription {

@@ -1,19 +1,18 @@
 //! Figure 6: ambient occlusion, shadows, indirect light, thin geometry, translucency, several cameras.
 
-use glam::Vec3A;
+use std::ops::ControlFlow;
+
 use qmc_sampling::{Independent, Replications};
 use scene_core::builtin::Builtin;
-use scene_core::film::LayeredImage;
-use scene_core::{ReferenceScene, RussianRoulette, Scene};
+use scene_core::{Scene, SceneDescription};
 
 use super::{Report, Variant, at_least, gain, run};
-use crate::choices::{AnyChoice, AnyHeuristic, LightSelection};
-use crate::estimators::{FirstEvent, NextEvent, OwnSampling, PathTracer};
 use crate::experiments::{Context, Setup, ratio_of_means};
 use crate::filtering::{View, render_views};
 use crate::filters::{FilterSettings, PathFilterName};
 use crate::metrics::{ImagePair, relative_mse};
 use crate::program::{EstimatorName, Failure};
+use crate::render::thread_pool;
 
 /// What is filtered, in which scene, by which estimator.
 const APPLICATIONS: [(&str, &str, EstimatorName); 6] = [
@@ -56,56 +55,35 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
 /// Cameras side by side.
 const CAMERAS: usize = 4;
 
-/// Four cameras that move to the side: each on its own, and all together.
+/// Four cameras that move to the side: the first on its own, and with all together.
 fn cameras(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let [width, height] = context.effort([96, 72], [320, 240]);
-    let builtin = Builtin::named("office").ok_or("no office")?;
+    let description = Builtin::named("office").ok_or("no office")?.description();
     let mut setups = Vec::new();
     for number in 0..CAMERAS {
-        let mut description = builtin.description();
-        (description.camera.width, description.camera.height) = (width, height);
         // 6.5 cm to the right each, as two eyes are.
-        let right = description.camera.to_world.matrix3.x_axis;
-        description.camera.to_world.translation += right.normalize_or(Vec3A::X) * (0.065 * number as f32);
-        setups.push(ReferenceScene::new(description)?);
+        let camera = description.camera.moved_right(0.065 * number as f32);
+        let moved = SceneDescription { camera, ..description.clone() };
+        setups.push(Setup::of(context, moved, context.effort([96, 72], [320, 240]))?);
     }
-    let path = |scene: &ReferenceScene| PathTracer {
-        direct: NextEvent {
-            heuristic: AnyHeuristic::Power,
-            choice: AnyChoice::new(LightSelection::Power, scene.emitters()),
-        },
-        scattering: OwnSampling,
-        max_depth: u32::MAX,
-        roulette: RussianRoulette::PathThroughput { from_length: 4 },
-        first_event: FirstEvent::Any,
-    };
-    let tracers: Vec<_> = setups.iter().map(path).collect();
-    let views: Vec<_> =
-        setups.iter().zip(&tracers).map(|(scene, estimator)| View { scene, estimator, time: 0.0 }).collect();
+    let [first, ..] = &setups[..] else { return Err("no cameras".into()) };
+    let reference = first.reference(context, context.effort(512, 2048))?;
+    let tracers: Vec<_> = setups.iter().map(|setup| setup.settings.path_tracer(&setup.scene)).collect();
+    let pairs = setups.iter().zip(&tracers);
+    let views: Vec<_> = pairs.map(|(setup, estimator)| View { scene: &setup.scene, estimator, time: 0.0 }).collect();
     let settings = FilterSettings::default();
-    let filter = settings.filter(PathFilterName::Psf, setups[0].sensor())?;
+    let filter = settings.filter(PathFilterName::Psf, first.scene.sensor())?;
     let selection = settings.selection()?;
-    let render = |views: &[View<'_, _, _>], seed: u64, batches: u64, samples: u64, far: bool| {
-        let filter = if far {
-            filter
-        } else {
-            FilterSettings { filter_length: Some(0.0), ..settings.clone() }
-                .filter(PathFilterName::Psf, setups[0].sensor())?
-        };
-        let (films, _) = render_views(views, &Independent::new(seed), &filter, selection, 0..batches, samples)?;
-        Ok::<Vec<LayeredImage>, Failure>(films.iter().map(|film| film.develop(0)).collect())
+    let error = |views: &[View<'_, _, _>], seed: u64| {
+        let samplers = Independent::new(seed);
+        let goes_on = &mut |_| ControlFlow::Continue(());
+        let (films, _) = render_views(views, &samplers, &filter, selection, 0..1, SAMPLES, goes_on)?;
+        Ok::<f64, Failure>(relative_mse(&ImagePair::of_images(&films[0].develop(0), &reference)?))
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(context.threads).build()?;
     let (mut alone, mut together) = (Replications::new(), Replications::new());
-    pool.install(|| {
-        let truth = render(&views[..1], context.seed_of("cameras reference", 0), context.effort(128, 1024), 4, false)?;
+    thread_pool(context.threads)?.install(|| {
         for trial in 0..context.effort(3, 6) {
-            let error =
-                |image: &LayeredImage| Ok::<f64, Failure>(relative_mse(&ImagePair::of_images(image, &truth[0])?));
-            let one = render(&views[..1], context.seed_of("one camera", trial), 1, SAMPLES, true)?;
-            alone.push(error(&one[0])?);
-            let all = render(&views, context.seed_of("all cameras", trial), 1, SAMPLES, true)?;
-            together.push(error(&all[0])?);
+            alone.push(error(&views[..1], context.seed_of("one camera", trial))?);
+            together.push(error(&views, context.seed_of("all cameras", trial))?);
         }
         Ok::<(), Failure>(())
     })?;
