@@ -53,10 +53,10 @@ pub enum FilterError {
     #[error("{0}")]
     Setting(&'static str),
     /// An image that cannot be continued from there.
-    #[error("the image was stopped after {done} samples per pixel, which is no multiple of --filter-batch {batch}")]
+    #[error("a rendering cannot begin after {first} samples per pixel, which is no multiple of --filter-batch {batch}")]
     Continue {
         /// Samples so far.
-        done: u64,
+        first: u64,
         /// Samples of a batch.
         batch: u64,
     },

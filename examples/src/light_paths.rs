@@ -102,33 +102,37 @@ impl Default for LightPathSettings {
     }
 }
 
+/// Applies the discontinuity buffer for tiles of these sides: to the image and with the auxiliary channels of first hits. Variances are not
+/// known any more.
+///
+/// # Errors
+/// If the image has no colours.
+pub fn smooth(image: &mut LayeredImage, sides: [u32; 2]) -> Result<(), LayeredImageError> {
+    let channel = |name: &str| image.channel(name).unwrap_or_default();
+    let (albedo, normal) = (["Albedo.R", "Albedo.G", "Albedo.B"].map(channel), ["N.X", "N.Y", "N.Z"].map(channel));
+    let depth = channel("Z");
+    let at = |values: &[f32], pixel: usize| values.get(pixel).copied().unwrap_or(0.0);
+    let features: Vec<PixelFeatures> = (0..image.pixel_count())
+        .map(|pixel| PixelFeatures {
+            albedo: albedo.map(|values| at(values, pixel)),
+            normal: normal.map(|values| at(values, pixel)),
+            depth: at(depth, pixel),
+        })
+        .collect();
+    let size = [image.width(), image.height()];
+    let smooth = DiscontinuityBuffer::new(sides).filter(size, &features, &image.rgb()?);
+    let Some(smooth) = smooth else { return Ok(()) };
+    image.set_rgb(&smooth)?;
+    for name in ["Variance.R", "Variance.G", "Variance.B"] {
+        image.set_channel(name, vec![f32::INFINITY; smooth.len()])?;
+    }
+    Ok(())
+}
+
 impl LightPathSettings {
-    /// Applies the discontinuity buffer, if it is asked for and there is a tile: to the image and with the auxiliary channels of first
-    /// hits. Variances are not known any more.
-    ///
-    /// # Errors
-    /// If the image has no colours.
-    pub fn smooth(&self, image: &mut LayeredImage) -> Result<(), LayeredImageError> {
-        let (true, Some(tile)) = (self.discontinuity_buffer, self.interleave) else { return Ok(()) };
-        let channel = |name: &str| image.channel(name).unwrap_or_default();
-        let (albedo, normal) = (["Albedo.R", "Albedo.G", "Albedo.B"].map(channel), ["N.X", "N.Y", "N.Z"].map(channel));
-        let depth = channel("Z");
-        let at = |values: &[f32], pixel: usize| values.get(pixel).copied().unwrap_or(0.0);
-        let features: Vec<PixelFeatures> = (0..image.pixel_count())
-            .map(|pixel| PixelFeatures {
-                albedo: albedo.map(|values| at(values, pixel)),
-                normal: normal.map(|values| at(values, pixel)),
-                depth: at(depth, pixel),
-            })
-            .collect();
-        let size = [image.width(), image.height()];
-        let smooth = DiscontinuityBuffer::new(tile.sides()).filter(size, &features, &image.rgb()?);
-        let Some(smooth) = smooth else { return Ok(()) };
-        image.set_rgb(&smooth)?;
-        for name in ["Variance.R", "Variance.G", "Variance.B"] {
-            image.set_channel(name, vec![f32::INFINITY; smooth.len()])?;
-        }
-        Ok(())
+    /// Sides of the tile of the discontinuity buffer, if one is asked for and there is a tile.
+    pub fn smoothing(&self) -> Option<[u32; 2]> {
+        self.interleave.filter(|_| self.discontinuity_buffer).map(|tile| tile.sides())
     }
 
     /// Who shares light paths.

@@ -57,7 +57,7 @@ fn blocks(scene: &Balls, by_light: bool) -> Vec<Moments> {
             LightTracer { choice: camera.direct.choice, max_depth: camera.max_depth, roulette: camera.roulette };
         let light = by_light.then_some(&light);
         let (filter, budget) = (Filter::BOX, Budget::Samples(8));
-        let job = Job { scene, samplers: &samplers, camera: &camera, light, filter, budget, threads: 1 };
+        let job = Job { scene, samplers: &samplers, camera: &camera, light, filter, budget, first: 0, threads: 1 };
         let rendering = job.render(&mut |_| ControlFlow::Continue(())).unwrap();
         let image = rendering.film.develop(rendering.light_paths).rgb().unwrap();
         let half = SIZE as usize / BLOCKS;

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
+use lichtwerk::output::Checkpoint;
 use scene_core::film::LayeredImage;
 use tempfile::TempDir;
 
@@ -590,6 +591,114 @@ fn killed_at_any_time_leaves_the_old_file_or_the_new_one() {
         }
     }
     println!("{old} old, {new} new files");
+}
+
+fn image(folder: &Path, name: &str) -> LayeredImage {
+    LayeredImage::read_exr(&folder.join(name)).unwrap()
+}
+
+/// Same channels, bit for bit, and the same settings.
+fn assert_same_image(folder: &Path, one: &str, other: &str) {
+    let (a, b) = (image(folder, one), image(folder, other));
+    assert_eq!(a.channels().count(), b.channels().count(), "{one}, {other}");
+    for (name, values) in a.channels() {
+        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert!(bits(values) == bits(b.channel(name).unwrap()), "{one} and {other} differ in {name}");
+    }
+    assert_eq!(a.attributes().collect::<Vec<_>>(), b.attributes().collect::<Vec<_>>(), "{one}, {other}");
+}
+
+/// Killed without warning, and started again by the same command.
+#[cfg(unix)]
+#[test]
+fn a_killed_rendering_goes_on_from_its_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = ["--size", "48x32", "--spp", "3000", "--seed", "5", "--estimator", "light"];
+    let running_arguments =
+        [&whole[..], &["--checkpoint", "a.part", "--checkpoint-seconds", "0.02", "--out", "a.exr"]].concat();
+    let running = Running::start(folder.path(), &running_arguments);
+    let part = folder.path().join("a.part");
+    while !part.exists() {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    running.signal("-KILL");
+    running.wait();
+    let kept = Checkpoint::read(&part).unwrap().described.count();
+    assert!((1..3000).contains(&kept), "{kept} samples before it was killed: too few to be of use, or all");
+
+    let again = [&["render", "cornell-box", "--threads", "2"], &running_arguments[..]].concat();
+    let output = run(folder.path(), &again);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stderr).contains(&format!("a.part: {kept} samples per pixel are there")));
+    let uninterrupted = [&["render", "cornell-box", "--threads", "1"], &whole[..], &["--out", "b.exr"]].concat();
+    succeeds(folder.path(), &uninterrupted);
+    assert_same_image(folder.path(), "a.exr", "b.exr");
+    // Once more: nothing is left to be done.
+    run(folder.path(), &[&again[..], &["--stats", "a.json"]].concat());
+    assert_same_image(folder.path(), "a.exr", "b.exr");
+    assert_eq!(Checkpoint::read(&part).unwrap().described.samples, [[0, 3000]]);
+
+    fails(folder.path(), &[&again[..], &["--max-depth", "3"]].concat(), &["a.part", "max_depth"]);
+    fs::write(&part, "something else").unwrap();
+    fails(folder.path(), &again, &["a.part", "not a checkpoint"]);
+}
+
+/// Parts of a rendering, in any order, are the rendering: for estimators with and without light paths, shared light paths, progressive
+/// photons, a sampler that has to know the number of samples, and batches of a filter.
+#[test]
+fn shards_are_merged_to_the_whole_bit_for_bit() {
+    for (name, more) in [
+        ("path", &[][..]),
+        ("z-sobol", &["--sampler", "z-sobol"]),
+        ("light", &["--estimator", "light"]),
+        ("bdpt", &["--estimator", "bdpt"]),
+        ("igi", &["--estimator", "robust-igi", "--interleave", "3x3", "--discontinuity-buffer"]),
+        ("sppm", &["--estimator", "sppm"]),
+        ("photons", &["--estimator", "direct", "--lights", "photons"]),
+        ("psf", &["--filter", "psf", "--filter-batch", "4"]),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = ["render", "cornell-box", "--size", "20x14", "--spp", "12", "--seed", "3"];
+        let of = |outputs: &[&'static str]| [&scene[..], more, outputs].concat();
+        succeeds(folder.path(), &of(&["--out", "whole.exr"]));
+        for (shard, part, out) in [("1/3", "1.part", "1.exr"), ("2/3", "2.part", "2.exr"), ("3/3", "3.part", "3.exr")] {
+            succeeds(folder.path(), &of(&["--shard", shard, "--checkpoint", part, "--out", out, "--threads", "1"]));
+        }
+        let merge = ["merge", "3.part", "1.part", "2.part", "--out", "merged.exr", "--checkpoint", "all.part"];
+        succeeds(folder.path(), &merge);
+        println!("{name}");
+        assert_same_image(folder.path(), "whole.exr", "merged.exr");
+        assert_eq!(Checkpoint::read(&folder.path().join("all.part")).unwrap().described.samples, [[0, 12]]);
+
+        // From images to rounding.
+        if !matches!(name, "igi") {
+            succeeds(folder.path(), &["merge", "1.exr", "2.exr", "3.exr", "--out", "rounded.exr"]);
+            let [whole, rounded] = ["whole.exr", "rounded.exr"].map(|name| image(folder.path(), name).rgb().unwrap());
+            for (a, b) in whole.iter().flatten().zip(rounded.iter().flatten()) {
+                assert!((a - b).abs() <= 1e-6 * a.abs().max(1e-3), "{name}: {a} and {b}");
+            }
+        }
+        let twice = run(folder.path(), &["merge", "1.part", "1.part", "--out", "a.exr"]);
+        assert!(text(&twice.stderr).contains("samples 0 to 4 are in both"), "{}", text(&twice.stderr));
+        let gap = run(folder.path(), &["merge", "1.part", "3.part", "--out", "a.exr"]);
+        assert!(text(&gap.stderr).contains("warning: of 12 samples"), "{}", text(&gap.stderr));
+    }
+}
+
+#[test]
+fn parts_that_make_no_sense_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fails(folder.path(), &["render", "cornell-box", "--time", "1", "--shard", "1/2"], &["--shard", "--spp"]);
+    fails(folder.path(), &["merge", "a.part", "b.exr", "--out", "c.exr"], &["not both"]);
+    fails(folder.path(), &["merge", "a.part", "--out", "c.exr"], &["a.part"]);
+    fails(folder.path(), &tiny(&["--filter", "psf", "--filter-extra", "1", "--shard", "1/2"]), &["--filter-extra"]);
+    fails(folder.path(), &tiny(&["--estimator", "restir-direct", "--checkpoint", "a.part"]), &["restir-direct"]);
+    let halves = ["render", "cornell-box", "--size", "8x6", "--spp", "6", "--filter", "psf", "--filter-batch", "4"];
+    fails(folder.path(), &[&halves[..], &["--shard", "2/2"]].concat(), &["after 3 samples", "--filter-batch 4"]);
+    for (out, seed) in [("1.part", "1"), ("2.part", "2")] {
+        succeeds(folder.path(), &tiny(&["--seed", seed, "--checkpoint", out, "--out", "a.png"]));
+    }
+    fails(folder.path(), &["merge", "1.part", "2.part", "--out", "a.exr"], &["2.part", "seed: 1", "seed: 2"]);
 }
 
 #[test]

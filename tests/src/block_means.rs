@@ -82,7 +82,7 @@ pub fn render_through<S: Scene + Sync>(
     samples: u64,
 ) -> Rendering {
     let budget = Budget::Samples(samples);
-    let job = Job { scene, samplers, camera, light: None::<&NoLightPaths>, filter, budget, threads: 1 };
+    let job = Job { scene, samplers, camera, light: None::<&NoLightPaths>, filter, budget, first: 0, threads: 1 };
     job.render(&mut |_| std::ops::ControlFlow::Continue(())).expect("a scene with a size")
 }
 

@@ -31,8 +31,6 @@ pub struct Filtered<'a, E, P> {
     pub filter: P,
     /// Samples per pixel in a batch.
     pub batch: u64,
-    /// Samples per pixel that another rendering has taken: this one goes on where it stopped. A multiple of the batch.
-    pub done: u64,
     /// More camera samples for each of these, without light paths: they take averages of others, which smooths edges at hardly any cost.
     pub extra: u32,
     /// Segments of those at most.
@@ -65,7 +63,6 @@ impl<'a, E: Observable, P: PathFilter<FilterVertex> + Sync> Filtered<'a, E, P> {
             tracing,
             filter,
             batch: batch.max(1),
-            done: 0,
             extra: 0,
             max_depth: u32::MAX,
             switch: Mutex::new(SwitchOff::new(1)),
@@ -138,7 +135,6 @@ impl<E: Observable, P: PathFilter<FilterVertex> + Sync> CameraPass for Filtered<
     ) -> Result<PassCounts, FilmError> {
         let size = [film.width(), film.height()];
         let mut counts = PassCounts::default();
-        let samples = samples.start + self.done..samples.end + self.done;
         for first in samples.clone().step_by(self.batch as usize) {
             let batch = first..samples.end.min(first + self.batch);
             let traced = self.trace(context, size, batch.clone());

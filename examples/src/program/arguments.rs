@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::parts::Shard;
 use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
 use crate::filters::{FilterSettings, PathFilterName};
@@ -32,6 +33,8 @@ pub enum Command {
     Render(Box<RenderArguments>),
     /// Render frames, stereo pairs or motion blur, whose paths are filtered together.
     Frames(Box<FramesArguments>),
+    /// Put the parts of a rendering together: checkpoints exactly, images rounded.
+    Merge(MergeArguments),
     /// Compare two images: MSE, relative MSE, MRSE, FLIP, ratio of the means.
     Diff(DiffArguments),
     /// Measure what a paper claims, and write report.json.
@@ -126,6 +129,15 @@ pub struct RenderArguments {
     /// File for time, rays and memory, as JSON.
     #[arg(long)]
     pub stats: Option<PathBuf>,
+    /// File for the exact state of the rendering: written now and then and at the end; if it is there, the rendering goes on from it.
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// Seconds between two checkpoints.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = parse_positive)]
+    pub checkpoint_seconds: f64,
+    /// Only this part of the samples, for `lichtwerk merge`: number K of N equal ones.
+    #[arg(long, value_name = "K/N")]
+    pub shard: Option<Shard>,
     /// Show the image so far in the tev viewer that listens on HOST:PORT.
     #[arg(long, value_name = "HOST:PORT")]
     pub display_server: Option<String>,
@@ -148,7 +160,7 @@ pub struct RenderArguments {
     #[command(flatten)]
     pub filtering: FilterSettings,
     /// Go on where this path space filtered image stopped, and write the mean of both.
-    #[arg(long = "continue", value_name = "IMAGE.exr", requires = "filter", help_heading = "Path space filter")]
+    #[arg(long = "continue", value_name = "IMAGE.exr", requires = "filter", conflicts_with_all = ["checkpoint", "shard"], help_heading = "Path space filter")]
     pub continued: Option<PathBuf>,
 }
 
@@ -200,6 +212,23 @@ pub struct FramesArguments {
     /// Path space filtering.
     #[command(flatten)]
     pub filtering: FilterSettings,
+}
+
+/// Arguments of `merge`.
+#[derive(Clone, Debug, Args)]
+pub struct MergeArguments {
+    /// Checkpoints of parts of one rendering, or EXR images.
+    #[arg(required = true)]
+    pub parts: Vec<PathBuf>,
+    /// Image file, .exr or .png; may be given more than once.
+    #[arg(long, required = true)]
+    pub out: Vec<PathBuf>,
+    /// File for the merged checkpoint.
+    #[arg(long)]
+    pub checkpoint: Option<PathBuf>,
+    /// Exposure of PNG files, in stops.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
 }
 
 /// Arguments of `diff`.

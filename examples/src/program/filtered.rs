@@ -46,14 +46,14 @@ impl Finish for PathFilterName {
         let filter = filtering.filter(*self, sensor)?;
         let [width, height] = sensor.resolution();
         let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));
-        let done = settings.done;
-        if !done.is_multiple_of(batch) {
-            return Err(FilterError::Continue { done, batch }.into());
+        let first = settings.first;
+        if !first.is_multiple_of(batch) {
+            return Err(FilterError::Continue { first, batch }.into());
         }
         let selection = filtering.selection()?;
         let tracing = Tracing { estimator: camera, selection, point_lights: filtering.filter_visibility, time: 0.0 };
         let (extra, max_depth) = (filtering.filter_extra, settings.longest());
-        let camera = Filtered { done, extra, max_depth, ..Filtered::new(tracing, filter, batch) };
+        let camera = Filtered { extra, max_depth, ..Filtered::new(tracing, filter, batch) };
         run.render(&camera, None::<&NoLightPaths>, observe)
     }
 

@@ -24,8 +24,8 @@ impl<S: Scene + Sync, F: SamplerFamily> Run<'_, S, F> {
         observe: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         let (scene, samplers) = (self.scene, self.samplers);
-        let RenderSettings { filter, budget, threads, .. } = *self.settings;
-        Job { scene, samplers, camera, light, filter, budget, threads }.render(observe)
+        let RenderSettings { filter, budget, first, threads, .. } = *self.settings;
+        Job { scene, samplers, camera, light, filter, budget, first, threads }.render(observe)
     }
 }
 

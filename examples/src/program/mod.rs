@@ -8,15 +8,18 @@ mod finish;
 mod frames;
 mod list;
 mod load;
+mod parts;
 mod render;
 mod showcase;
 
 use clap::Parser;
 
 pub use arguments::{
-    Arguments, Command, DiffArguments, ExperimentArguments, FramesArguments, RenderArguments, ShowcaseArguments,
+    Arguments, Command, DiffArguments, ExperimentArguments, FramesArguments, MergeArguments, RenderArguments,
+    ShowcaseArguments,
 };
 pub use load::{LoadError, load_description};
+pub use parts::Shard;
 pub use render::{EstimatorName, RenderSettings, estimate, estimate_in, render_to_image};
 
 pub use crate::samplers::SamplerName;
@@ -54,6 +57,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Showcase(arguments)) => showcase::run(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Frames(arguments)) => frames::run(&arguments),
+        Some(Command::Merge(arguments)) => parts::merge(&arguments),
         Some(Command::Diff(arguments)) => diff::run(&arguments),
         Some(Command::Experiment(arguments)) => experiment::run(&arguments),
         Some(Command::List) => list::run(),

@@ -1,5 +1,6 @@
 //! `lichtwerk render`.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -10,7 +11,9 @@ use scene_core::film::{Filter, LayeredImage};
 use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
 use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
+use super::filtered::PATH_FILTER;
 use super::finish::{Finish, Plain, Run};
+use super::parts::{Part, annotate, image_of};
 use super::{Failure, RenderArguments, filtered, load_description, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
@@ -18,10 +21,11 @@ use crate::estimators::{
     PhotonLights, VirtualLights,
 };
 use crate::filters::{FilterSettings, PathFilterName};
-use crate::light_paths::LightPathSettings;
+use crate::light_paths::{LightPathSettings, smooth};
 use crate::light_photons::LightPhotonSettings;
 use crate::output::{
-    Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image, write_json,
+    Checkpoint, Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image,
+    write_json,
 };
 use crate::photons::{PathLimits, PhotonSettings};
 use crate::render::{Budget, Observe, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
@@ -137,8 +141,10 @@ pub struct RenderSettings {
     pub path_filter: Option<PathFilterName>,
     /// Its settings.
     pub filtering: FilterSettings,
-    /// Samples per pixel that another rendering has taken, which the path space filter goes on from.
-    pub done: u64,
+    /// Samples per pixel that another rendering takes: this one begins with the next. Whole batches, with a path space filter.
+    pub first: u64,
+    /// Samples per pixel of all renderings together, if this is one of several.
+    pub planned: Option<u64>,
     /// Distance of ambient occlusion, in units of the scene.
     pub ao_distance: f32,
     /// Light paths, for the estimators that connect to them.
@@ -193,6 +199,11 @@ impl RenderSettings {
         }
     }
 
+    /// Sides of the tile of the discontinuity buffer that smooths the image, if it is asked for.
+    pub(super) fn smoothing(&self) -> Option<[u32; 2]> {
+        self.light_paths.smoothing().filter(|_| self.estimator.connects_light_paths())
+    }
+
     fn roulette(&self) -> RussianRoulette {
         RussianRoulette::PathThroughput { from_length: self.rr_depth.saturating_sub(1) }
     }
@@ -212,7 +223,8 @@ impl RenderSettings {
             filter: Filter::BOX,
             path_filter: None,
             filtering: FilterSettings::default(),
-            done: 0,
+            first: 0,
+            planned: None,
             ao_distance: f32::INFINITY,
             light_paths: LightPathSettings::default(),
             resampling: ResamplingSettings::default(),
@@ -255,7 +267,9 @@ pub fn estimate_in<S: Scene + Sync>(
 ) -> Result<Rendering, RenderError> {
     let family = |name| {
         let paths = match settings.budget {
-            Budget::Samples(samples) => u32::try_from(samples).unwrap_or(u32::MAX).clamp(1, 1 << 31),
+            Budget::Samples(samples) => {
+                u32::try_from(settings.planned.unwrap_or(samples)).unwrap_or(u32::MAX).clamp(1, 1 << 31)
+            }
             Budget::Seconds(_) => PATHS_OF_TIMED_RENDERINGS,
         };
         AnyFamily::new(name, scene.sensor().resolution(), paths, settings.seed)
@@ -407,15 +421,17 @@ pub fn render_to_image(
 ) -> Result<(LayeredImage, Rendering), RenderError> {
     let rendering = estimate(scene, settings, observe)?;
     let mut image = rendering.film.develop(rendering.light_paths);
-    if settings.estimator.connects_light_paths() {
-        settings.light_paths.smooth(&mut image)?;
+    if let Some(sides) = settings.smoothing() {
+        smooth(&mut image, sides)?;
     }
-    annotate(&mut image, scene, settings, &rendering);
+    annotate(&mut image, &attributes(scene, settings), rendering.samples);
     Ok((image, rendering))
 }
 
-fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderSettings, rendering: &Rendering) {
+/// What an image tells about its making.
+pub(super) fn attributes(scene: &ReferenceScene, settings: &RenderSettings) -> BTreeMap<String, String> {
     let name = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned()).unwrap_or_default();
+    let filter = settings.path_filter.map(|name| (PATH_FILTER, filtered::describe(name, &settings.filtering)));
     let texts = [
         ("scene", scene.name().to_owned()),
         ("estimator", name(settings.estimator.to_possible_value())),
@@ -426,14 +442,7 @@ fn annotate(image: &mut LayeredImage, scene: &ReferenceScene, settings: &RenderS
         ("maxDepth", settings.max_depth_text()),
         ("renderer", concat!("Lichtwerk ", env!("CARGO_PKG_VERSION")).to_owned()),
     ];
-    for (key, text) in texts {
-        // Attributes are a service: one that does not fit is no reason to lose the image.
-        let _ = image.set_attribute(key, text);
-    }
-    if let Some(name) = settings.path_filter {
-        let _ = image.set_attribute(filtered::PATH_FILTER, filtered::describe(name, &settings.filtering));
-    }
-    let _ = image.set_attribute(scene_core::film::SAMPLES_PER_PIXEL, rendering.samples);
+    texts.into_iter().chain(filter).map(|(key, text)| (key.to_owned(), text)).collect()
 }
 
 /// Loads, renders, writes.
@@ -489,7 +498,8 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         filter,
         path_filter,
         filtering: arguments.filtering.clone(),
-        done: 0,
+        first: 0,
+        planned: None,
         light_paths: arguments.light_paths.clone(),
         resampling: arguments.resampling.clone(),
         light_photons: arguments.light_photons.clone(),
@@ -503,21 +513,37 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     }
     let earlier = arguments.continued.as_deref().map(|path| filtered::earlier(path, &scene, &settings)).transpose()?;
     if let Some((done, _)) = &earlier {
-        settings.done = *done;
+        settings.first = *done;
     }
+    let part = if earlier.is_none() { Some(Part::of(arguments, &scene, &mut settings)?) } else { None };
     let mut watch = Watch::new(arguments, &settings, &name);
-    let (mut image, rendering) = render_to_image(&scene, &settings, |pass| watch.observe(pass))?;
+    let mut keeper = part.as_ref().and_then(|part| part.keeper(arguments.checkpoint_seconds));
+    let rendering = estimate(&scene, &settings, |pass| {
+        if let Some(Err(error)) = keeper.as_mut().map(|keeper| keeper.observe(&pass)) {
+            watch.progress.suspend(|| report(&format!("warning: {error}")));
+        }
+        watch.observe(pass)
+    })?;
+    let (samples, threads) = (rendering.samples, rendering.threads);
+    let done = match &part {
+        Some(part) => part.with(rendering)?,
+        None => Part::whole(&scene, &settings, rendering),
+    };
+    let mut image = image_of(&done)?;
     if let Some((_, earlier)) = earlier {
         image = LayeredImage::merge(&[earlier, image])?;
     }
-    watch.finish(&image, &rendering);
+    watch.finish(&image, &done, samples);
 
     // Write.
     for path in &outputs {
         save_image(path, &image, arguments.exposure)?;
     }
     if let Some(path) = &arguments.stats {
-        write_json(path, &stats(arguments, &rendering, load_seconds))?;
+        write_json(path, &stats(arguments, &done, threads, load_seconds))?;
+    }
+    if let Some(path) = &arguments.checkpoint {
+        done.write(path)?;
     }
     Ok(())
 }
@@ -529,20 +555,20 @@ fn default_outputs(name: &str) -> Result<Vec<PathBuf>, Failure> {
     Ok(["exr", "png"].iter().map(|extension| folder.join(format!("{name}.{extension}"))).collect())
 }
 
-fn stats(arguments: &RenderArguments, rendering: &Rendering, load_seconds: f64) -> RenderStats {
-    let (width, height) = (rendering.film.width(), rendering.film.height());
+fn stats(arguments: &RenderArguments, done: &Checkpoint, threads: usize, load_seconds: f64) -> RenderStats {
+    let (width, height, described) = (done.film.width(), done.film.height(), &done.described);
     RenderStats {
         scene: arguments.scene.clone(),
         estimator: arguments.estimator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
         width,
         height,
-        spp: rendering.samples,
-        threads: rendering.threads,
+        spp: described.count(),
+        threads,
         load_seconds,
-        render_seconds: rendering.seconds,
-        paths: rendering.samples * u64::from(width) * u64::from(height) + rendering.light_paths,
-        closest_hit_rays: rendering.rays.closest_hit,
-        visibility_rays: rendering.rays.visibility,
+        render_seconds: described.seconds,
+        paths: described.count() * u64::from(width) * u64::from(height) + described.light_paths,
+        closest_hit_rays: described.rays[0],
+        visibility_rays: described.rays[1],
         peak_bytes: peak_bytes(),
     }
 }
@@ -585,15 +611,15 @@ impl Watch {
         }
     }
 
-    fn finish(&mut self, image: &LayeredImage, rendering: &Rendering) {
+    fn finish(&mut self, image: &LayeredImage, done: &Checkpoint, samples: u64) {
         self.progress.finish();
         self.show(image);
-        let rejected = rendering.film.rejected_samples();
+        let rejected = done.film.rejected_samples();
         if rejected > 0 {
             report(&format!("warning: {rejected} samples were not finite and count as black"));
         }
         if self.interrupt.is_requested() {
-            report(&format!("interrupted after {} samples per pixel; the image so far is kept", rendering.samples));
+            report(&format!("interrupted after {samples} samples per pixel; the image so far is kept"));
         }
     }
 }

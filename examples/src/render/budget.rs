@@ -22,12 +22,14 @@ pub(super) struct Schedule {
     budget: Budget,
     /// Samples per pixel that are not to be parted.
     batch: u64,
+    /// Number of the first sample.
+    first: u64,
     done: u64,
 }
 
 impl Schedule {
-    pub(super) fn new(budget: Budget, batch: u64) -> Self {
-        Self { budget, batch: batch.max(1), done: 0 }
+    pub(super) fn new(budget: Budget, batch: u64, first: u64) -> Self {
+        Self { budget, batch: batch.max(1), first, done: 0 }
     }
 
     /// Samples per pixel so far, counting the pass that was handed out last.
@@ -52,9 +54,9 @@ impl Schedule {
                 }
             }
         };
-        let start = self.done;
+        let start = self.first.saturating_add(self.done);
         self.done = self.done.saturating_add(count);
-        (count > 0).then_some(start..self.done)
+        (count > 0).then_some(start..start.saturating_add(count))
     }
 
     /// Part of the budget that is spent.
@@ -73,21 +75,21 @@ mod tests {
 
     #[test]
     fn passes_cover_the_samples_once() {
-        let mut schedule = Schedule::new(Budget::Samples(100), 1);
-        let (mut next, mut elapsed) = (0, 0.0);
+        let mut schedule = Schedule::new(Budget::Samples(100), 1, 20);
+        let (mut next, mut elapsed) = (20, 0.0);
         while let Some(pass) = schedule.next_pass(elapsed) {
             assert_eq!(pass.start, next);
             next = pass.end;
             elapsed += 0.01 * (pass.end - pass.start) as f64;
         }
-        assert_eq!((next, schedule.done()), (100, 100));
+        assert_eq!((next, schedule.done()), (120, 100));
         assert_eq!(schedule.fraction(0.0), 1.0);
     }
 
     #[test]
     fn time_is_kept_to_within_a_pass() {
         for limit in [0.0, 0.3, 5.0] {
-            let mut schedule = Schedule::new(Budget::Seconds(limit), 1);
+            let mut schedule = Schedule::new(Budget::Seconds(limit), 1, 0);
             let mut elapsed = 0.0;
             while let Some(pass) = schedule.next_pass(elapsed) {
                 elapsed += 0.02 * (pass.end - pass.start) as f64;
@@ -100,7 +102,7 @@ mod tests {
 
     #[test]
     fn batches_are_not_parted() {
-        let mut schedule = Schedule::new(Budget::Samples(30), 8);
+        let mut schedule = Schedule::new(Budget::Samples(30), 8, 0);
         let mut passes = Vec::new();
         while let Some(pass) = schedule.next_pass(0.001 * passes.len() as f64) {
             passes.push(pass);
@@ -111,6 +113,6 @@ mod tests {
 
     #[test]
     fn no_samples_no_pass() {
-        assert_eq!(Schedule::new(Budget::Samples(0), 1).next_pass(0.0), None);
+        assert_eq!(Schedule::new(Budget::Samples(0), 1, 5).next_pass(0.0), None);
     }
 }

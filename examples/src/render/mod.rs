@@ -46,6 +46,8 @@ pub struct Job<'a, S, F, E, L = NoLightPaths> {
     pub filter: Filter,
     /// When to stop.
     pub budget: Budget,
+    /// Number of the first sample of each pixel: others take those before.
+    pub first: u64,
     /// Number of threads; zero is one per core.
     pub threads: usize,
 }
@@ -59,6 +61,8 @@ pub struct Progress<'a> {
     pub samples: u64,
     /// Light paths so far.
     pub light_paths: u64,
+    /// Rays so far.
+    pub rays: RayCounts,
     /// Part of the budget that is spent, from 0 to 1.
     pub fraction: f64,
     /// Time since the start.
@@ -82,6 +86,20 @@ pub struct Rendering {
     pub preparation_seconds: f64,
     /// Number of threads that rendered.
     pub threads: usize,
+}
+
+impl Rendering {
+    /// As after its last pass.
+    pub fn progress(&self) -> Progress<'_> {
+        Progress {
+            film: &self.film,
+            samples: self.samples,
+            light_paths: self.light_paths,
+            rays: self.rays,
+            fraction: 1.0,
+            elapsed: Duration::from_secs_f64(self.seconds),
+        }
+    }
 }
 
 /// Why a rendering could not start.
@@ -153,7 +171,7 @@ where
         let mut film = Film::new(width, height)?;
         let pool = thread_pool(self.threads)?;
         let start = Instant::now();
-        let mut schedule = Schedule::new(self.budget, self.camera.batch());
+        let mut schedule = Schedule::new(self.budget, self.camera.batch(), self.first);
         let (mut rays, mut light_paths) = (RayCounts::default(), 0);
         let context = PassContext { scene: self.scene, samplers: self.samplers, filter: self.filter };
         let pixels = u64::from(width) * u64::from(height);
@@ -169,8 +187,9 @@ where
                 let elapsed = start.elapsed();
                 let progress = Progress {
                     film: &film,
-                    samples: samples.end,
+                    samples: schedule.done(),
                     light_paths,
+                    rays,
                     fraction: schedule.fraction(elapsed.as_secs_f64()),
                     elapsed,
                 };

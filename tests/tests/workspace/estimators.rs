@@ -188,6 +188,7 @@ fn light_in_one_mode(scene: &OneMode<ReferenceScene>, seed: u64) -> Rendering {
         light: Some(&LightTracer { choice, max_depth, roulette }),
         filter: Filter::BOX,
         budget: Budget::Samples(Effort::QUICK.samples),
+        first: 0,
         threads: 1,
     };
     job.render(&mut |_| ControlFlow::Continue(())).unwrap()

@@ -88,9 +88,12 @@ fn threads_and_passes_change_nothing() {
 #[test]
 fn a_rendering_goes_on_where_another_one_stopped() {
     let scene = scene(builtin::cornell_box(), [32, 24]);
-    let settings = |samples, done| {
-        let settings =
-            RenderSettings { done, sampler: SamplerName::GlobalSobol, ..RenderSettings::new(Budget::Samples(samples)) };
+    let settings = |samples, first| {
+        let settings = RenderSettings {
+            first,
+            sampler: SamplerName::GlobalSobol,
+            ..RenderSettings::new(Budget::Samples(samples))
+        };
         let filtering = FilterSettings { filter_batch: Some(4), ..FilterSettings::default() };
         filtered(&settings, PathFilterName::Psf, filtering)
     };

@@ -42,10 +42,11 @@ pub enum FilmError {
 /// of their own.
 ///
 /// Threads work on disjoint tiles ([`tiles_mut`](Self::tiles_mut)) or rows ([`rows_mut`](Self::rows_mut)). As each
-/// pixel is summed by one thread in one order, the result is the same bit for bit at any number of threads. Splats go
+/// pixel is summed by one thread in one order, the result is the same bit for bit at any number of threads; and as sums keep their rounding errors,
+/// also however a rendering is cut into parts that are [merged](Self::merge). Splats go
 /// into one [`SplatBuffer`] per batch of light paths; add the buffers in the order of the batches.
 ///
-/// **Memory**: 128 bytes per pixel, and 48 more once there are splats.
+/// **Memory**: 232 bytes per pixel, and 96 more once there are splats.
 ///
 /// ```
 /// use scene_core::film::{Film, FilmError};
@@ -78,6 +79,11 @@ impl Film {
         pixels.try_reserve_exact(count).map_err(|_| FilmError::TooLarge { width, height })?;
         pixels.resize(count, Pixel::default());
         Ok(Self { width, height, pixels, splats: SplatLayer::default() })
+    }
+
+    /// From as many pixels as its size needs.
+    pub(super) fn from_parts(width: u32, height: u32, pixels: Vec<Pixel>, splats: SplatLayer) -> Self {
+        Self { width, height, pixels, splats }
     }
 
     /// Width in pixels.

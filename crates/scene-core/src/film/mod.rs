@@ -1,7 +1,7 @@
 //! Film: what samples are added to, and the images that come of it.
 //!
 //! - [`Filter`]: where in (and around) a pixel to sample, by filter importance sampling.
-//! - [`Film`]: sums in f64 of radiance, its squares, and auxiliary quantities per [`Pixel`]. Threads own disjoint
+//! - [`Film`]: exact sums of radiance, its squares, and auxiliary quantities per [`Pixel`]. Threads own disjoint
 //!   [`FilmTile`]s, so there is nothing to lock and the result does not depend on the number of threads.
 //! - [`SplatBuffer`]: contributions of light paths, which arrive anywhere on the film.
 //! - [`LayeredImage`]: named channels and settings in f32; what [`Film::develop`] returns, and what is read from and
@@ -32,6 +32,8 @@ mod layered_image;
 mod merge;
 mod pixel;
 mod splat;
+mod state;
+mod sum;
 mod tile;
 
 #[cfg(feature = "image-files")]
@@ -53,4 +55,5 @@ pub use pixel::Pixel;
 #[cfg(feature = "image-files")]
 pub use png::srgb_from_linear;
 pub use splat::SplatBuffer;
+pub use state::FilmStateError;
 pub use tile::FilmTile;

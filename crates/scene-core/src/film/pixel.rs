@@ -1,6 +1,8 @@
 //! What a pixel accumulates.
 
-/// Sums over the samples of one pixel, in f64.
+use super::sum::Sum;
+
+/// Sums over the samples of one pixel, in f64 with their rounding errors: exact for all practical purposes, and so the same in any order.
 ///
 /// With `x_i` the samples of a channel and `n` their number,
 /// ```text
@@ -23,14 +25,14 @@
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pixel {
-    sum: [f64; 3],
-    sum_squares: [f64; 3],
-    albedo: [f64; 3],
-    normal: [f64; 3],
-    depth: f64,
-    samples: u64,
-    aov_samples: u64,
-    rejected: u64,
+    pub(super) sum: [Sum; 3],
+    pub(super) sum_squares: [Sum; 3],
+    pub(super) albedo: [Sum; 3],
+    pub(super) normal: [Sum; 3],
+    pub(super) depth: Sum,
+    pub(super) samples: u64,
+    pub(super) aov_samples: u64,
+    pub(super) rejected: u64,
 }
 
 impl Pixel {
@@ -44,8 +46,8 @@ impl Pixel {
         }
         for (channel, value) in rgb.into_iter().enumerate() {
             let value = f64::from(value);
-            self.sum[channel] += value;
-            self.sum_squares[channel] += value * value;
+            self.sum[channel].add(value);
+            self.sum_squares[channel].add(value * value);
         }
     }
 
@@ -60,21 +62,21 @@ impl Pixel {
         }
         self.aov_samples += 1;
         for channel in 0..3 {
-            self.albedo[channel] += f64::from(albedo[channel]);
-            self.normal[channel] += f64::from(normal[channel]);
+            self.albedo[channel].add(f64::from(albedo[channel]));
+            self.normal[channel].add(f64::from(normal[channel]));
         }
-        self.depth += f64::from(depth);
+        self.depth.add(f64::from(depth));
     }
 
     /// Adds the sums of another pixel, as if its samples had been added here.
     pub fn merge(&mut self, other: &Self) {
         for channel in 0..3 {
-            self.sum[channel] += other.sum[channel];
-            self.sum_squares[channel] += other.sum_squares[channel];
-            self.albedo[channel] += other.albedo[channel];
-            self.normal[channel] += other.normal[channel];
+            self.sum[channel].merge(&other.sum[channel]);
+            self.sum_squares[channel].merge(&other.sum_squares[channel]);
+            self.albedo[channel].merge(&other.albedo[channel]);
+            self.normal[channel].merge(&other.normal[channel]);
         }
-        self.depth += other.depth;
+        self.depth.merge(&other.depth);
         self.samples += other.samples;
         self.aov_samples += other.aov_samples;
         self.rejected += other.rejected;
@@ -112,7 +114,7 @@ impl Pixel {
 
     /// Mean distance of what the samples hit; zero if there are none.
     pub fn depth(&self) -> f64 {
-        if self.aov_samples == 0 { 0.0 } else { self.depth / self.aov_samples as f64 }
+        if self.aov_samples == 0 { 0.0 } else { self.depth.value() / self.aov_samples as f64 }
     }
 }
 
@@ -120,18 +122,18 @@ pub(super) fn is_finite(values: &[f32; 3]) -> bool {
     values.iter().all(|value| value.is_finite())
 }
 
-pub(super) fn scaled(sum: [f64; 3], count: u64) -> [f64; 3] {
-    if count == 0 { [0.0; 3] } else { sum.map(|sum| sum / count as f64) }
+pub(super) fn scaled(sum: [Sum; 3], count: u64) -> [f64; 3] {
+    if count == 0 { [0.0; 3] } else { sum.map(|sum| sum.value() / count as f64) }
 }
 
 /// Variance of the mean of `count` values, of which the sums of their powers are given.
-pub(super) fn variance_of_mean(sum: [f64; 3], sum_squares: [f64; 3], count: u64) -> Option<[f64; 3]> {
+pub(super) fn variance_of_mean(sum: [Sum; 3], sum_squares: [Sum; 3], count: u64) -> Option<[f64; 3]> {
     if count < 2 {
         return None;
     }
     let n = count as f64;
     Some(std::array::from_fn(|channel| {
-        let mean = sum[channel] / n;
-        ((sum_squares[channel] / n - mean * mean) / (n - 1.0)).max(0.0)
+        let mean = sum[channel].value() / n;
+        ((sum_squares[channel].value() / n - mean * mean) / (n - 1.0)).max(0.0)
     }))
 }

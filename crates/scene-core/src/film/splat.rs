@@ -2,6 +2,7 @@
 
 use super::Filter;
 use super::pixel::is_finite;
+use super::sum::Sum;
 
 /// Contributions of a batch of light paths, to be added to a [`Film`](super::Film) in a fixed order.
 ///
@@ -89,8 +90,8 @@ impl SplatBuffer {
 /// Sums over the splats of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct SplatPixel {
-    pub(super) sum: [f64; 3],
-    pub(super) sum_squares: [f64; 3],
+    pub(super) sum: [Sum; 3],
+    pub(super) sum_squares: [Sum; 3],
 }
 
 /// Sums of splats over the whole film.
@@ -111,8 +112,8 @@ impl SplatLayer {
             let pixel = &mut self.pixels[index as usize];
             for (channel, value) in rgb.into_iter().enumerate() {
                 let value = f64::from(value);
-                pixel.sum[channel] += value;
-                pixel.sum_squares[channel] += value * value;
+                pixel.sum[channel].add(value);
+                pixel.sum_squares[channel].add(value * value);
             }
         }
     }
@@ -125,8 +126,8 @@ impl SplatLayer {
         }
         for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
             for channel in 0..3 {
-                pixel.sum[channel] += other.sum[channel];
-                pixel.sum_squares[channel] += other.sum_squares[channel];
+                pixel.sum[channel].merge(&other.sum[channel]);
+                pixel.sum_squares[channel].merge(&other.sum_squares[channel]);
             }
         }
     }

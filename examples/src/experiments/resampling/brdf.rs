@@ -98,6 +98,7 @@ fn pictures(context: &Context, setup: &Setup) -> Result<(), Failure> {
             camera: &camera,
             light: None::<&NoLightPaths>,
             filter: setup.settings.filter,
+            first: 0,
             budget: Budget::Samples(context.effort(4, 16)),
             threads: context.threads,
         };

@@ -31,6 +31,7 @@ fn render(setup: &Setup, camera: &impl CameraPass, samples: u64, seed: u64) -> R
         camera,
         light: None::<&NoLightPaths>,
         filter: setup.settings.filter,
+        first: 0,
         budget: Budget::Samples(samples),
         threads: setup.settings.threads,
     };
