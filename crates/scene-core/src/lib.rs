@@ -9,6 +9,8 @@ pub mod builtin;
 mod counting;
 pub mod film;
 mod frame;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 #[cfg(feature = "luxcore")]
 pub mod luxcore;
 #[cfg(feature = "reference")]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use scene_core::builtin::Builtin;
-use scene_core::{SceneDescription, luxcore, mitsuba};
+use scene_core::{SceneDescription, gltf, luxcore, mitsuba};
 
 /// Why there is no scene.
 #[derive(Debug, thiserror::Error)]
@@ -13,7 +13,9 @@ pub enum LoadError {
     #[error("'{0}' is neither a builtin scene (see 'lichtwerk list') nor a file")]
     Unknown(String),
     /// A file of another kind.
-    #[error("{0}: unknown kind of scene file; Mitsuba 3 XML (.xml) and LuxCore properties (.scn) can be read")]
+    #[error(
+        "{0}: unknown kind of scene file; Mitsuba 3 XML (.xml), LuxCore properties (.scn) and glTF 2.0 (.gltf, .glb) can be read"
+    )]
     Kind(String),
     /// Parameters for something that has none.
     #[error("'{0}' takes no parameters (-D); only Mitsuba 3 XML does")]
@@ -24,6 +26,9 @@ pub enum LoadError {
     /// The importer for LuxCore's format.
     #[error(transparent)]
     LuxCore(#[from] luxcore::ImportError),
+    /// The importer for glTF.
+    #[error(transparent)]
+    Gltf(#[from] gltf::ImportError),
 }
 
 /// The description of a builtin scene or of a file.
@@ -41,8 +46,9 @@ pub fn load_description(scene: &str, definitions: &[(String, String)]) -> Result
     let path = Path::new(scene);
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("xml") => Ok(mitsuba::load(path, definitions)?),
-        Some("scn") if !definitions.is_empty() => Err(LoadError::Parameters(scene.to_owned())),
+        Some("scn" | "gltf" | "glb") if !definitions.is_empty() => Err(LoadError::Parameters(scene.to_owned())),
         Some("scn") => Ok(luxcore::load(path)?),
+        Some("gltf" | "glb") => Ok(gltf::load(path)?),
         _ if path.exists() => Err(LoadError::Kind(scene.to_owned())),
         _ => Err(LoadError::Unknown(scene.to_owned())),
     }
@@ -59,6 +65,10 @@ mod tests {
         assert!(message("nowhere.xml").contains("nowhere.xml"));
         assert!(message("nowhere.scn").contains("cannot read nowhere.scn"));
         assert!(load_description("nowhere.scn", &[("a".into(), "b".into())]).unwrap_err().to_string().contains("(-D)"));
+        assert!(message("nowhere.GLB").contains("cannot read nowhere.GLB"));
+        assert!(
+            load_description("nowhere.gltf", &[("a".into(), "b".into())]).unwrap_err().to_string().contains("(-D)")
+        );
         assert!(message("Cargo.toml").contains("Cargo.toml: unknown kind"));
         assert!(load_description("furnace", &[("a".into(), "b".into())]).is_err());
         assert!(load_description("furnace", &[]).is_ok());

@@ -6,6 +6,7 @@ use super::conductor::{Conductor, RoughConductor};
 use super::cook_torrance::CookTorrance;
 use super::dielectric::{Interface, RoughDielectric};
 use super::fresnel::ConductorFresnel;
+use super::metallic_roughness::MetallicRoughness;
 use super::microfacet::Microfacet;
 use super::normals::{NormalModifier, ShadingInput};
 use super::phong::Phong;
@@ -73,6 +74,10 @@ impl Wrappers {
                 }
                 Material::NormalMap { normals, inner } => {
                     self.normals.push(NormalModifier::Map { normals });
+                    *inner
+                }
+                Material::TangentNormalMap { normals, scale, inner } => {
+                    self.normals.push(NormalModifier::TangentMap { normals, scale });
                     *inner
                 }
                 Material::EvaluateOnly(inner) => {
@@ -184,10 +189,24 @@ fn surface(material: Material) -> Result<Surface, MaterialError> {
         Material::CookTorrance { diffuse_reflectance: d, specular_reflectance: s, ior, alpha } => {
             Surface::CookTorrance(Box::new(CookTorrance::new(d, s, ior, alpha)))
         }
+        Material::MetallicRoughness {
+            base_color,
+            metallic_roughness,
+            metallic,
+            roughness,
+            ior,
+            specular,
+            specular_color,
+        } => {
+            let factors = [metallic, roughness];
+            let model = MetallicRoughness::new(base_color, metallic_roughness, factors, ior, specular, specular_color);
+            Surface::MetallicRoughness(Box::new(model))
+        }
         wrapper @ (Material::Mask { .. }
         | Material::TwoSided { .. }
         | Material::BumpMap { .. }
         | Material::NormalMap { .. }
+        | Material::TangentNormalMap { .. }
         | Material::EvaluateOnly(_)
         | Material::Filled { .. }) => {
             return Err(nesting("twosided", wrapper.name(), " of two different sides: put it outside"));

@@ -16,7 +16,7 @@ pub enum Distribution {
 
 /// How a surface scatters light: what importers produce and builtin scenes are written in.
 ///
-/// The models agree with the plugins of Mitsuba 3 of the same names. One-sided materials are black from behind.
+/// The models agree with the plugins of Mitsuba 3 of the same names, where it has them. One-sided materials are black from behind.
 /// [`compile`](Self::compile) prepares them for rendering.
 ///
 /// # Example
@@ -146,6 +146,23 @@ pub enum Material {
         /// Root mean square slope.
         alpha: f32,
     },
+    /// The metallic-roughness model of glTF 2.0: a mixture of a rough metal and of a rough dielectric coat over a diffuse base.
+    MetallicRoughness {
+        /// Albedo of the base; reflectance of the metal at normal incidence.
+        base_color: Texture,
+        /// Roughness in the green and metalness in the blue component; images must be read as [`Linear`](crate::texture::ColorSpace::Linear).
+        metallic_roughness: Texture,
+        /// Factor for the metalness.
+        metallic: f32,
+        /// Factor for the roughness, whose square is the microfacets' alpha; at least 0.0001 is taken for that.
+        roughness: f32,
+        /// Index of refraction of the dielectric, 1.5 without the extension `KHR_materials_ior`.
+        ior: f32,
+        /// Weight of the dielectric's reflection, 1 without the extension `KHR_materials_specular`.
+        specular: f32,
+        /// Factor for the dielectric's reflectance at normal incidence, 1 without that extension.
+        specular_color: Rgb,
+    },
     /// Lets light through, straight on, where it is not opaque.
     Mask {
         /// Opacity: the luminance, clamped to `[0, 1]`.
@@ -173,6 +190,16 @@ pub enum Material {
     NormalMap {
         /// Normals in the shading frame, `(n + 1) / 2`; images must be read as [`Linear`](crate::texture::ColorSpace::Linear).
         normals: Texture,
+        /// What is tilted.
+        inner: Box<Material>,
+    },
+    /// Replaces the shading normal, as glTF means it: x lies along `dp/du`, y points to where `v` decreases, which on mirrored texture
+    /// coordinates is the other side of the frame than [`NormalMap`](Self::NormalMap)'s.
+    TangentNormalMap {
+        /// Normals, `(n + 1) / 2`; images must be read as [`Linear`](crate::texture::ColorSpace::Linear).
+        normals: Texture,
+        /// Factor for x and y.
+        scale: f32,
         /// What is tilted.
         inner: Box<Material>,
     },
@@ -219,10 +246,12 @@ impl Material {
             Self::RoughPlastic { .. } => "roughplastic",
             Self::Phong { .. } => "phong",
             Self::CookTorrance { .. } => "cooktorrance",
+            Self::MetallicRoughness { .. } => "metallicroughness",
             Self::Mask { .. } => "mask",
             Self::TwoSided { .. } => "twosided",
             Self::BumpMap { .. } => "bumpmap",
             Self::NormalMap { .. } => "normalmap",
+            Self::TangentNormalMap { .. } => "tangentnormalmap",
             Self::EvaluateOnly(_) => "evaluate-only",
             Self::Filled { .. } => "filled",
         }

@@ -19,6 +19,7 @@ mod diffuse;
 mod erf;
 mod error;
 mod fresnel;
+mod metallic_roughness;
 mod microfacet;
 mod normals;
 mod phong;

@@ -32,6 +32,11 @@ pub(super) enum NormalModifier {
     ///
     /// Source: Cohen, Olano, Manocha 1998; agrees with Mitsuba's `normalmap` without its shadowing function.
     Map { normals: Texture },
+    /// `n' = 2 c - 1`, x and y scaled, in a frame with x along `p_u` and y on the side of `-p_v`: glTF's pictures have +y up, and `v` down.
+    ///
+    /// Source: Khronos 2021, "glTF 2.0 Specification", sections 3.7.2.1 and 3.9.3. Of a mesh's tangents only those that its texture
+    /// coordinates define are known here.
+    TangentMap { normals: Texture, scale: f32 },
 }
 
 impl NormalModifier {
@@ -49,6 +54,16 @@ impl NormalModifier {
                 let local = (normals.eval(input.uv).0 * 2.0 - Vec3A::ONE).try_normalize();
                 let local = local.filter(|n| n.z > 0.0).unwrap_or(Vec3A::Z);
                 Frame::from_z_and_tangent(normal, input.dpdu).to_world(local).try_normalize().unwrap_or(normal)
+            }
+            Self::TangentMap { normals, scale } => {
+                let mapped = normals.eval(input.uv).0 * 2.0 - Vec3A::ONE;
+                let local = Vec3A::new(mapped.x * scale, mapped.y * scale, mapped.z).try_normalize();
+                let local = local.filter(|n| n.z > 0.0).unwrap_or(Vec3A::Z);
+                let mut frame = Frame::from_z_and_tangent(normal, input.dpdu);
+                if frame.y.dot(input.dpdv) > 0.0 {
+                    frame.y = -frame.y;
+                }
+                frame.to_world(local).try_normalize().unwrap_or(normal)
             }
         }
     }

@@ -5,6 +5,7 @@ use glam::Vec3A;
 use super::conductor::{Conductor, RoughConductor};
 use super::cook_torrance::CookTorrance;
 use super::dielectric::{Interface, RoughDielectric};
+use super::metallic_roughness::{self, MetallicRoughness};
 use super::phong::Phong;
 use super::plastic::Plastic;
 use super::rough_plastic::RoughPlastic;
@@ -26,6 +27,7 @@ pub(super) enum Surface {
     RoughPlastic(Box<RoughPlastic>),
     Phong(Box<Phong>),
     CookTorrance(Box<CookTorrance>),
+    MetallicRoughness(Box<MetallicRoughness>),
 }
 
 /// A [`Surface`] at one point: its textures are looked up.
@@ -45,6 +47,8 @@ pub(super) enum Lobe<'m> {
     Phong(&'m Phong, [Rgb; 2]),
     /// As for Phong.
     CookTorrance(&'m CookTorrance, [Rgb; 2]),
+    /// With the base colour, and the roughness and metalness in green and blue.
+    MetallicRoughness(&'m MetallicRoughness, [Rgb; 2]),
 }
 
 impl Surface {
@@ -99,7 +103,8 @@ impl Surface {
             | Self::RoughDielectric(_)
             | Self::RoughPlastic(_)
             | Self::Phong(_)
-            | Self::CookTorrance(_) => Sharpness::Glossy,
+            | Self::CookTorrance(_)
+            | Self::MetallicRoughness(_) => Sharpness::Glossy,
         }
     }
 
@@ -132,6 +137,9 @@ impl Surface {
             Self::Phong(m) => Lobe::Phong(m, [look_up(&m.diffuse_reflectance), look_up(&m.specular_reflectance)]),
             Self::CookTorrance(m) => {
                 Lobe::CookTorrance(m, [look_up(&m.diffuse_reflectance), look_up(&m.specular_reflectance)])
+            }
+            Self::MetallicRoughness(m) => {
+                Lobe::MetallicRoughness(m, [look_up(&m.base_color), m.scaled(look_up(&m.metallic_roughness))])
             }
         }
     }
@@ -166,6 +174,7 @@ impl Lobe<'_> {
             Self::RoughPlastic(m, [diffuse, specular]) => m.eval_pdf(*diffuse, *specular, wo, wi),
             Self::Phong(m, [diffuse, specular]) => m.eval_pdf(*diffuse, *specular, wo, wi),
             Self::CookTorrance(m, [diffuse, specular]) => m.eval_pdf(*diffuse, *specular, wo, wi),
+            Self::MetallicRoughness(m, [base, surface]) => m.eval_pdf(*base, *surface, wo, wi),
             Self::Conductor(..) | Self::Dielectric(..) | Self::ThinDielectric(..) => (Rgb::ZERO, 0.0),
         }
     }
@@ -183,6 +192,7 @@ impl Lobe<'_> {
             Self::RoughPlastic(m, [diffuse, specular]) => m.sample(*diffuse, *specular, wo, u),
             Self::Phong(m, [diffuse, specular]) => m.sample(*diffuse, *specular, wo, u),
             Self::CookTorrance(m, [diffuse, specular]) => m.sample(*diffuse, *specular, wo, u),
+            Self::MetallicRoughness(m, [base, surface]) => m.sample(*base, *surface, wo, u),
         }
     }
 
@@ -200,6 +210,7 @@ impl Lobe<'_> {
             Self::RoughPlastic(m, [diffuse, specular]) => m.albedo(*diffuse, *specular, wo),
             Self::Phong(_, [diffuse, specular]) => *diffuse + *specular,
             Self::CookTorrance(m, [diffuse, specular]) => *diffuse + *specular * m.reflectance(wo.z.abs()),
+            Self::MetallicRoughness(m, [base, surface]) => m.albedo(*base, *surface, wo),
         }
     }
 
@@ -214,6 +225,7 @@ impl Lobe<'_> {
             Self::Phong(m, [_, specular]) if *specular != Rgb::ZERO => m.roughness(),
             Self::CookTorrance(m, [_, specular]) if *specular != Rgb::ZERO => m.microfacet.roughness(),
             Self::Phong(..) | Self::CookTorrance(..) => 1.0,
+            Self::MetallicRoughness(_, [_, surface]) => metallic_roughness::roughness(*surface),
         }
     }
 }

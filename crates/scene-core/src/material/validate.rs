@@ -44,6 +44,23 @@ impl Material {
                 check.number("ior", *ior, "finite and positive", |x| x > 0.0)?;
                 check.roughness(&[*alpha])
             }
+            Self::MetallicRoughness {
+                base_color,
+                metallic_roughness,
+                metallic,
+                roughness,
+                ior,
+                specular,
+                specular_color,
+            } => {
+                check.share("base_color", base_color)?;
+                check.share("metallic_roughness", metallic_roughness)?;
+                for (name, value) in [("metallic", metallic), ("roughness", roughness), ("specular", specular)] {
+                    check.number(name, *value, "in [0, 1]", |x| (0.0..=1.0).contains(&x))?;
+                }
+                check.number("ior", *ior, "finite and at least 1", |x| x >= 1.0)?;
+                check.colour("specular_color", *specular_color, "finite and at least 0", |x| x >= 0.0)
+            }
             Self::Mask { opacity, inner } => {
                 check.finite("opacity", opacity)?;
                 inner.validate()
@@ -59,6 +76,11 @@ impl Material {
             }
             Self::NormalMap { normals, inner } => {
                 check.finite("normals", normals)?;
+                inner.validate()
+            }
+            Self::TangentNormalMap { normals, scale, inner } => {
+                check.finite("normals", normals)?;
+                check.number("scale", *scale, "finite", |_| true)?;
                 inner.validate()
             }
             // Media are valid by construction.

@@ -36,6 +36,12 @@ pub enum TextureError {
         /// Row.
         y: u32,
     },
+    /// Encoded bytes that are no image.
+    #[error("cannot decode the image: {reason}")]
+    Encoded {
+        /// What the decoder says.
+        reason: String,
+    },
     /// A file cannot be read.
     #[error("cannot read the image {}: {reason}", path.display())]
     File {

@@ -27,6 +27,19 @@ impl Image {
         let image = reader.decode().map_err(|e| failed(e.to_string()))?;
         convert(image, color_space).map_err(|e| failed(e.to_string()))
     }
+
+    /// Decodes a PNG, JPEG or Radiance HDR file in memory; the content decides which.
+    ///
+    /// As [`open`](Self::open), but images that need more than 512 MiB are refused: bytes from elsewhere may lie about their size.
+    ///
+    /// # Errors
+    /// If it cannot be decoded, with the decoder's reason.
+    pub fn decode(bytes: &[u8], color_space: ColorSpace) -> Result<Self, TextureError> {
+        let failed = |reason: String| TextureError::Encoded { reason };
+        let reader = ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format();
+        let image = reader.map_err(|e| failed(e.to_string()))?.decode().map_err(|e| failed(e.to_string()))?;
+        convert(image, color_space)
+    }
 }
 
 fn is_exr(path: &Path) -> std::io::Result<bool> {

@@ -12,7 +12,7 @@ pub(crate) const RED: Rgb = Rgb::new(0.7, 0.3, 0.2);
 pub(crate) const BLUE: Rgb = Rgb::new(0.1, 0.27, 0.36);
 
 /// All materials with components that are not Dirac deltas and without perturbed normals.
-pub(crate) const SCATTERING: [&str; 28] = [
+pub(crate) const SCATTERING: [&str; 32] = [
     "diffuse",
     "roughconductor-ggx-0.05",
     "roughconductor-ggx-0.3",
@@ -38,6 +38,10 @@ pub(crate) const SCATTERING: [&str; 28] = [
     "phong-80",
     "cooktorrance-0.1",
     "cooktorrance-0.4",
+    "metallicroughness-dielectric",
+    "metallicroughness-metal",
+    "metallicroughness-mixed",
+    "metallicroughness-specular",
     "evaluateonly",
     "evaluateonly-twosided",
     "mask-evaluateonly",
@@ -73,6 +77,19 @@ pub(crate) fn rough_dielectric(int_ior: f32, ext_ior: f32, distribution: Distrib
         specular_transmittance: 1.0.into(),
         distribution,
         alpha,
+    }
+}
+
+/// With the extensions' defaults.
+pub(crate) fn metallic_roughness(base_color: Rgb, metallic: f32, roughness: f32) -> Material {
+    Material::MetallicRoughness {
+        base_color: base_color.into(),
+        metallic_roughness: 1.0.into(),
+        metallic,
+        roughness,
+        ior: 1.5,
+        specular: 1.0,
+        specular_color: Rgb::ONE,
     }
 }
 
@@ -174,6 +191,26 @@ pub(crate) fn material(name: &str) -> Material {
             specular_reflectance: RED.into(),
             ior: 2.5,
             alpha: 0.4,
+        },
+        "metallicroughness-dielectric" => metallic_roughness(RED, 0.0, 0.6),
+        "metallicroughness-metal" => metallic_roughness(RED, 1.0, 0.5),
+        "metallicroughness-mixed" => Material::MetallicRoughness {
+            base_color: image(4, 4, |x, y| [height(x, y), 0.5, 0.2]),
+            metallic_roughness: image(3, 5, |x, y| [0.9, 0.6 + 0.4 * height(x, y), height(y, x)]),
+            metallic: 0.8,
+            roughness: 0.9,
+            ior: 1.5,
+            specular: 1.0,
+            specular_color: Rgb::ONE,
+        },
+        "metallicroughness-specular" => Material::MetallicRoughness {
+            base_color: BLUE.into(),
+            metallic_roughness: Rgb::new(0.0, 0.7, 1.0).into(),
+            metallic: 0.1,
+            roughness: 1.0,
+            ior: 2.0,
+            specular: 0.7,
+            specular_color: Rgb::new(0.9, 3.0, 0.2),
         },
         "evaluateonly" => Material::EvaluateOnly(Box::new(material("cooktorrance-0.4"))),
         "evaluateonly-twosided" => Material::EvaluateOnly(Box::new(material("twosided-roughplastic"))),

@@ -48,3 +48,12 @@ fn other_roughness_is_noticed() {
         check(twin, &wrong, &right, direction(0.6, 0.2)).expect_reject();
     }
 }
+
+/// The planted bug: the sampler takes the surface for a little less metallic, and so chooses the lobes otherwise.
+#[test]
+fn other_metalness_is_noticed() {
+    let [right, wrong] =
+        [0.5, 0.4].map(|metallic| cases::metallic_roughness(cases::RED, metallic, 0.5).compile().unwrap());
+    let (right, wrong) = (right.resolve([0.0; 2]), wrong.resolve([0.0; 2]));
+    check(SUITE.twin("other metalness"), &wrong, &right, direction(0.6, 0.2)).expect_reject();
+}

@@ -6,6 +6,7 @@
 mod cases;
 mod chi_square;
 mod laws;
+mod metallic_roughness;
 mod mitsuba;
 mod quadrature;
 mod robust;

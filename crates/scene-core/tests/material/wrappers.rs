@@ -141,6 +141,29 @@ fn frames_follow_the_maps() {
     assert_eq!(map([0.5, 0.5, 0.5]).shading_frame(&input).z, Vec3A::Y);
 }
 
+/// In glTF y points against the derivative by `v`, whichever way that runs.
+#[test]
+fn tangent_normal_maps_know_mirrored_coordinates() {
+    let input = ShadingInput {
+        uv: [0.0; 2],
+        dpdu: Vec3A::X * 2.0,
+        dpdv: -Vec3A::Y,
+        shading_normal: Vec3A::Z,
+        geometric_normal: Vec3A::Z,
+    };
+    let map = |scale: f32| {
+        let inner = Box::new(Material::diffuse(RED));
+        Material::TangentNormalMap { normals: Rgb::new(0.5, 1.0, 1.0).into(), scale, inner }.compile().unwrap()
+    };
+    let tilted = |scale: f32, dpdv: Vec3A| map(scale).shading_frame(&ShadingInput { dpdv, ..input }).z;
+    assert!((tilted(1.0, -Vec3A::Y) - Vec3A::new(0.0, 1.0, 1.0).normalize()).length() < 1e-5);
+    assert!((tilted(1.0, Vec3A::Y) - Vec3A::new(0.0, -1.0, 1.0).normalize()).length() < 1e-5);
+    assert!((tilted(0.5, -Vec3A::Y) - Vec3A::new(0.0, 0.5, 1.0).normalize()).length() < 1e-5);
+    assert!(map(1.0).needs_tangents() && tilted(0.0, Vec3A::Y) == Vec3A::Z);
+    // Without derivatives the frame is any, and the tilt the same.
+    assert!((tilted(1.0, Vec3A::ZERO).z - 0.5f32.sqrt()).abs() < 1e-5);
+}
+
 #[test]
 fn invalid_parameters_are_named() {
     let message = |material: Material| material.compile().unwrap_err().to_string();

@@ -323,7 +323,7 @@ mod tests {
             assert_eq!(met(&hierarchy, &Ray::new(-direction, direction)), [0]);
         }
         // Beside the plane and parallel to it.
-        assert_eq!(met(&hierarchy, &Ray::new(Vec3A::new(-3.0, 0.1, 0.0), Vec3A::X)), []);
+        assert!(met(&hierarchy, &Ray::new(Vec3A::new(-3.0, 0.1, 0.0), Vec3A::X)).is_empty());
     }
 
     #[test]
