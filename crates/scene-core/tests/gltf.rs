@@ -75,7 +75,8 @@ fn every_kind_of_triangles_is_read() {
         assert!((b - a).cross(c - a).z > 0.0, "{triangle}");
     }
     // The default material is a rough white metal.
-    let Material::MetallicRoughness { metallic, roughness, .. } = &scene.materials[0] else { panic!() };
+    let Material::TwoSided { front, .. } = &scene.materials[0] else { panic!() };
+    let Material::MetallicRoughness { metallic, roughness, .. } = &**front else { panic!() };
     assert_eq!((scene.materials.len(), *metallic, *roughness), (1, 1.0, 1.0));
 }
 

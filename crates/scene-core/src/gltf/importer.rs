@@ -77,7 +77,9 @@ impl<'s> Importer<'s> {
         self.place_meshes(&placed, &meshes, &surfaces)?;
         let camera = self.camera(&placed)?;
         self.lights(&placed)?;
-        if self.description.lights.is_empty() && self.description.instances.iter().all(|i| i.radiance.is_none()) {
+        // Emissive textures are accents, such as displays and headlights, of assets to be lit by their viewer.
+        let is_lamp = |surface: &SurfaceOf| surface.emitted.as_ref().is_some_and(|emitted| emitted.texture.is_none());
+        if self.description.lights.is_empty() && !surfaces.values().any(is_lamp) {
             self.warn(&root, "there is no light: a constant environment of radiance 1 is added");
             self.description.lights.push(Light::Constant { radiance: Rgb::ONE });
         }

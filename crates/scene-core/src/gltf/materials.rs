@@ -38,7 +38,7 @@ impl<'s> Importer<'s> {
     ) -> Result<(Material, Option<Emission>)> {
         let Some(material) = index.and_then(|index| self.source.document.materials().nth(index)) else {
             // Section 3.7.2.1: a material of all defaults.
-            return Ok((opaque(Pbr::default(), [1.0; 4]), None));
+            return Ok((opaque(Pbr::default(), [1.0; 4]).two_sided(), None));
         };
         let place = self.source.place("materials", index.unwrap_or_default(), material.name());
         let sets: Vec<u32> = textures_of(&material).iter().map(|named| named.set).collect();
@@ -54,7 +54,8 @@ impl<'s> Importer<'s> {
         Ok((self.masked(&material, surface, &place)?, emission))
     }
 
-    /// Glass if it is transmissive, else the metallic-roughness model.
+    /// Glass if it is transmissive, else the metallic-roughness model. That has two sides, whatever `doubleSided` says: whoever culls
+    /// sees through the back of a wall, but light must not, and black would swallow it.
     fn surface(&mut self, material: &Document<'s>, users: &[&Primitive], place: &Place) -> Result<Material> {
         let pbr = self.pbr(material, place)?;
         if let Some(glass) = self.transmissive(material, &pbr, users, place)? {
@@ -68,8 +69,7 @@ impl<'s> Importer<'s> {
         }
         let [r, g, b] = specular.as_ref().map_or([1.0; 3], |specular| specular.specular_color_factor());
         let weight = specular.as_ref().map_or(1.0, |specular| specular.specular_factor());
-        let one_sided = opaque(pbr, [r, g, b, weight]);
-        Ok(if material.double_sided() { one_sided.two_sided() } else { one_sided })
+        Ok(opaque(pbr, [r, g, b, weight]).two_sided())
     }
 
     fn pbr(&mut self, material: &Document<'s>, place: &Place) -> Result<Pbr> {

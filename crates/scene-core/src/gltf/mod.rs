@@ -12,7 +12,7 @@
 //! | `normalTexture` | [`TangentNormalMap`](crate::material::Material::TangentNormalMap); tangents are those of the texture coordinates |
 //! | `emissiveFactor`, `emissiveTexture`, `KHR_materials_emissive_strength` | radiance on the front; a texture becomes a constant for each triangle |
 //! | `alphaMode` | [`Mask`](crate::material::Material::Mask): the alpha as opacity, cut off for `MASK` |
-//! | `doubleSided` | [`TwoSided`](crate::material::Material::TwoSided); without it a surface is black from behind |
+//! | `doubleSided` | all opaque surfaces are [`TwoSided`](crate::material::Material::TwoSided): without it glTF would cull the back, which light cannot |
 //! | textures | PNG and JPEG; wrapping, nearest or bilinear; `KHR_texture_transform`; colours are sRGB, everything else is linear |
 //! | `KHR_lights_punctual` | point, spot and directional |
 //! | cameras | the first perspective one |
@@ -29,7 +29,8 @@
 //!
 //! # Defaults
 //! - **No camera:** one of a vertical angle of 0.7 radians looks from the direction (0.5, 0.4, 1) at the middle of the scene's box and holds all of it.
-//! - **No light** (neither punctual nor emissive): a constant environment of radiance 1. Both are warnings.
+//! - **No light** (neither punctual nor an emissive material without texture; emissive textures count as accents, as of displays and headlights): a
+//!   constant environment of radiance 1. Both are warnings.
 //!
 //! # Errors and warnings
 //! An extension that the asset requires and that is not known is an error; one that it uses is a warning. So is what is passed over:
