@@ -11,6 +11,7 @@
 //! - [`metrics`]: how far an image is from another.
 //! - [`experiments`]: figures and claims of papers, measured.
 //! - [`output`]: files, the viewer, the terminal.
+//! - [`report`]: pages that show what was measured.
 //! - [`program`]: the subcommands of `lichtwerk`.
 
 pub mod choices;
@@ -25,5 +26,6 @@ pub mod output;
 pub mod photons;
 pub mod program;
 pub mod render;
+pub mod report;
 pub mod resampling;
 pub mod samplers;

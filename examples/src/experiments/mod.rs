@@ -23,6 +23,7 @@ mod stratification_efficiency;
 mod trials;
 
 use crate::program::Failure;
+use crate::report::Overview;
 
 pub use context::Context;
 pub use report::{Claim, Report, Row};
@@ -134,7 +135,7 @@ impl Experiment {
         EXPERIMENTS.iter().copied().find(|experiment| experiment.name == name)
     }
 
-    /// Runs it, and writes `report.json` into the context's folder.
+    /// Runs it, and writes `report.json` and the page `report.html` into the context's folder.
     ///
     /// # Errors
     /// What the experiment fails of, or a file that cannot be written.
@@ -142,6 +143,9 @@ impl Experiment {
         context.prepare_folder()?;
         let report = (self.measure)(context)?;
         context.write_report(&report)?;
+        let mut overview = Overview::new();
+        overview.push(self.about, report.clone(), &context.out);
+        overview.write(&context.out)?;
         Ok(report)
     }
 }

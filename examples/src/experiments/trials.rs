@@ -28,8 +28,21 @@ impl Trials {
     /// # Errors
     /// If it cannot be compared with the reference.
     pub fn push(&mut self, rendering: &Rendering, reference: &LayeredImage) -> Result<(), MetricError> {
-        let image = rendering.film.develop(rendering.light_paths);
-        self.errors.push(relative_mse(&ImagePair::of_images(&image, reference)?));
+        self.push_image(&rendering.film.develop(rendering.light_paths), rendering, reference).map(drop)
+    }
+
+    /// Takes in one rendering whose image was worked on after it was developed. Returns its relative mean squared error.
+    ///
+    /// # Errors
+    /// If it cannot be compared with the reference.
+    pub fn push_image(
+        &mut self,
+        image: &LayeredImage,
+        rendering: &Rendering,
+        reference: &LayeredImage,
+    ) -> Result<f64, MetricError> {
+        let error = relative_mse(&ImagePair::of_images(image, reference)?);
+        self.errors.push(error);
         self.seconds.push(rendering.seconds);
         self.rays.push(rendering.rays.total() as f64);
         let pixels = image.rgb()?;
@@ -37,7 +50,12 @@ impl Trials {
         for (moments, &value) in self.values.iter_mut().zip(pixels.iter().flatten()) {
             moments.push(f64::from(value));
         }
-        Ok(())
+        Ok(error)
+    }
+
+    /// The moments of each channel of each pixel, row by row. Empty without renderings.
+    pub fn values(&self) -> &[Replications] {
+        &self.values
     }
 
     /// How many there are.

@@ -22,7 +22,12 @@ const ACES: [f64; 6] = [0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0, 0.6 * 0.6 * 2.43, 0.6
 /// **Source**: P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. Fairchild, *FLIP: A Difference
 /// Evaluator for Alternating Images*, 2020; computed by NVIDIA's implementation.
 pub fn flip_ldr(pair: &ImagePair) -> f64 {
-    mean_compared(pair, &error_map(pair, |linear| linear))
+    mean_compared(pair, &flip_ldr_map(pair))
+}
+
+/// The differences whose mean is [`flip_ldr`], one for each pixel, row by row.
+pub fn flip_ldr_map(pair: &ImagePair) -> Vec<f32> {
+    error_map(pair, |linear| linear)
 }
 
 /// HDR-FLIP: per pixel the largest LDR-FLIP over a range of [exposures](exposures()), tone mapped by ACES; then the

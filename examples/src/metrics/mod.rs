@@ -18,6 +18,6 @@ mod pair;
 mod squared_error;
 
 pub use diff::{DiffReport, diff};
-pub use flip::{exposures, flip_hdr, flip_ldr};
+pub use flip::{exposures, flip_hdr, flip_ldr, flip_ldr_map};
 pub use pair::{ImagePair, MetricError};
 pub use squared_error::{MRSE_TRIMMED, RELATIVE_EPSILON, mean_ratio, mrse, mse, relative_mse};
