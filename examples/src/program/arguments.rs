@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::compare::RenderOptions;
 use super::parts::Shard;
 use super::render::{EstimatorName, FilterName};
 use crate::choices::{AnyHeuristic, LightSelection};
@@ -37,7 +38,9 @@ pub enum Command {
     Merge(MergeArguments),
     /// Compare two images: MSE, relative MSE, MRSE, FLIP, ratio of the means.
     Diff(DiffArguments),
-    /// Measure what a paper claims, and write report.json.
+    /// Render a scene with several estimators in turn, and write a page that compares them, with error bars.
+    Compare(CompareArguments),
+    /// Measure what a paper claims, and write report.json and report.html.
     Experiment(ExperimentArguments),
     /// List builtin scenes, estimators, heuristics, samplers and experiments.
     List,
@@ -243,6 +246,34 @@ pub struct DiffArguments {
     pub json: Option<PathBuf>,
 }
 
+/// Arguments of `compare`.
+#[derive(Clone, Debug, Args)]
+pub struct CompareArguments {
+    /// A builtin scene (see `lichtwerk list`) or a scene file.
+    pub scene: String,
+    /// Estimators, each as NAME[:OPTION[=VALUE]]*, with the long options of `render`: `path,bdpt:heuristic=balance`.
+    #[arg(long, required = true, value_delimiter = ',', value_name = "ENTRIES")]
+    pub estimators: Vec<String>,
+    /// Renderings of each estimator at each budget, with different seeds.
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub trials: u64,
+    /// The image that is taken for the truth, .exr [default: path tracing, kept in the cache].
+    #[arg(long, value_name = "FILE")]
+    pub reference: Option<PathBuf>,
+    /// Samples per pixel of the reference that path tracing makes [default: 64 times the budget].
+    #[arg(long, conflicts_with = "reference", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    pub reference_spp: Option<u64>,
+    /// Folder where references are kept.
+    #[arg(long, default_value = "out/references")]
+    pub cache: PathBuf,
+    /// Folder for report.html, report.json and pictures [default: out/compare-SCENE].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Options of `render`, for all estimators.
+    #[command(flatten)]
+    pub options: RenderOptions,
+}
+
 /// Arguments of `experiment`.
 #[derive(Clone, Debug, Args)]
 pub struct ExperimentArguments {
@@ -251,7 +282,7 @@ pub struct ExperimentArguments {
     /// Be done within a minute.
     #[arg(long)]
     pub quick: bool,
-    /// Folder for report.json and pictures; for `all`, each experiment has a folder of its name in it
+    /// Folder for report.json, report.html and pictures; for `all`, each experiment has a folder of its name in it
     /// [default: out/NAME].
     #[arg(long)]
     pub out: Option<PathBuf>,

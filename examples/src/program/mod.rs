@@ -1,6 +1,7 @@
 //! The `lichtwerk` program: its subcommands as functions.
 
 mod arguments;
+mod compare;
 mod diff;
 mod experiment;
 mod filtered;
@@ -9,15 +10,17 @@ mod frames;
 mod list;
 mod load;
 mod parts;
+mod prepare;
 mod render;
 mod showcase;
 
 use clap::Parser;
 
 pub use arguments::{
-    Arguments, Command, DiffArguments, ExperimentArguments, FramesArguments, MergeArguments, RenderArguments,
-    ShowcaseArguments,
+    Arguments, Command, CompareArguments, DiffArguments, ExperimentArguments, FramesArguments, MergeArguments,
+    RenderArguments, ShowcaseArguments,
 };
+pub use compare::RenderOptions;
 pub use load::{LoadError, load_description};
 pub use parts::Shard;
 pub use render::{EstimatorName, RenderSettings, estimate, estimate_in, render_to_image};
@@ -59,6 +62,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Command::Frames(arguments)) => frames::run(&arguments),
         Some(Command::Merge(arguments)) => parts::merge(&arguments),
         Some(Command::Diff(arguments)) => diff::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Experiment(arguments)) => experiment::run(&arguments),
         Some(Command::List) => list::run(),
     }

@@ -14,7 +14,7 @@ use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 use super::filtered::PATH_FILTER;
 use super::finish::{Finish, Plain, Run};
 use super::parts::{Part, annotate, image_of};
-use super::{Failure, RenderArguments, filtered, load_description, report};
+use super::{Failure, RenderArguments, filtered, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
     AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NextEvent, NoLightPaths, OwnSampling, PathTracer,
@@ -104,7 +104,7 @@ impl FilterName {
     }
 
     /// The reconstruction filter and the path space filter among those that were named: one of each at most.
-    fn sort(names: &[Self]) -> Result<(Option<Filter>, Option<PathFilterName>), Failure> {
+    pub(super) fn sort(names: &[Self]) -> Result<(Option<Filter>, Option<PathFilterName>), Failure> {
         let reconstructions: Vec<Filter> = names.iter().filter_map(|name| name.reconstruction()).collect();
         let path_space: Vec<PathFilterName> = names.iter().filter_map(|name| name.path_space()).collect();
         if reconstructions.len() > 1 || path_space.len() > 1 {
@@ -164,7 +164,7 @@ impl RenderSettings {
     }
 
     /// Whether photons tell which lights get shadow rays.
-    fn selects_by_photons(&self) -> bool {
+    pub(super) fn selects_by_photons(&self) -> bool {
         let applies = matches!(self.estimator, EstimatorName::Path | EstimatorName::Direct);
         applies && self.lights == LightSelection::Photons && self.resampling.direct == DirectName::Nee
     }
@@ -449,25 +449,10 @@ pub(super) fn attributes(scene: &ReferenceScene, settings: &RenderSettings) -> B
 pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     // Load and build the scene.
     let start = Instant::now();
-    let mut description = load_description(&arguments.scene, &arguments.definitions)?;
-    if let Some([width, height]) = arguments.size {
-        (description.camera.width, description.camera.height) = (width, height);
-    }
-    let (reconstruction, path_filter) = FilterName::sort(&arguments.filter)?;
-    let filter = reconstruction.unwrap_or(description.filter);
-    let samples = arguments.spp.or(description.samples_per_pixel.map(u64::from)).unwrap_or(64);
-    let max_depth = arguments.max_depth.or(description.max_depth).unwrap_or(u32::MAX);
-    let name = description.name.clone();
-    let scene = ReferenceScene::new(description).map_err(|error| format!("{}: {error}", arguments.scene))?;
-    for warning in scene.warnings() {
-        report(&format!("warning: {warning}"));
-    }
-    if scene.emitters().is_empty() && arguments.estimator != EstimatorName::Ao {
-        return Err(format!("{}: the scene has no light, so every pixel would be black", arguments.scene).into());
-    }
-    if scene.has_media() && !arguments.estimator.knows_media() {
-        report("warning: this estimator takes participating media for clear; path and direct know them");
-    }
+    let (scene, wishes) = arguments.build(arguments.description()?)?;
+    arguments.check(&scene)?;
+    let name = scene.name().to_owned();
+    let mut settings = arguments.settings(&scene, &wishes)?;
     let load_seconds = start.elapsed().as_secs_f64();
 
     // Find out now whether the files can be written.
@@ -481,36 +466,6 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     }
 
     // Render.
-    let mut settings = RenderSettings {
-        estimator: arguments.estimator,
-        heuristic: arguments.heuristic,
-        lights: arguments.lights,
-        // Batches of the filter are contiguous in a sequence through the whole image.
-        sampler: arguments.sampler.unwrap_or(match path_filter {
-            Some(_) => SamplerName::GlobalSobol,
-            None => SamplerName::default(),
-        }),
-        budget: arguments.time.map_or(Budget::Samples(samples), Budget::Seconds),
-        seed: arguments.seed,
-        threads: arguments.threads,
-        max_depth,
-        rr_depth: arguments.rr_depth,
-        filter,
-        path_filter,
-        filtering: arguments.filtering.clone(),
-        first: 0,
-        planned: None,
-        light_paths: arguments.light_paths.clone(),
-        resampling: arguments.resampling.clone(),
-        light_photons: arguments.light_photons.clone(),
-        photons: arguments.photons.clone(),
-        ao_distance: arguments.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
-    };
-    if settings.selects_by_photons() && settings.light_photons.other_rays == 0 {
-        report(
-            "warning: without shadow rays for other lights, light that the photons missed is lost (--other-rays 1 finds it)",
-        );
-    }
     let earlier = arguments.continued.as_deref().map(|path| filtered::earlier(path, &scene, &settings)).transpose()?;
     if let Some((done, _)) = &earlier {
         settings.first = *done;

@@ -80,7 +80,7 @@ fn row(name: &str, image: &LayeredImage, rendering: &Rendering) -> String {
 
 /// Root mean square over pixels and channels of the standard error of the mean over the value, with the usual
 /// regularisation: `sqrt(mean(variance / (value^2 + 0.01)))`.
-fn relative_standard_error(image: &LayeredImage) -> f64 {
+pub(super) fn relative_standard_error(image: &LayeredImage) -> f64 {
     let channels = [("R", "Variance.R"), ("G", "Variance.G"), ("B", "Variance.B")];
     let (mut sum, mut count) = (0.0, 0u64);
     for (value, variance) in channels {
