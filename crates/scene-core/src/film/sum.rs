@@ -7,8 +7,8 @@
 /// n |sum| < 2^106 g
 /// ```
 /// where all `n` numbers, and the partial sums, are multiples of `g` and no larger than `|sum|`: each rounding error is a multiple of `g` and at most
-/// `2^-53 |sum|`, so their sum is below `2^53 g`, and exact. Samples of single precision have `g = 2^-23` of the smallest: a million of them may differ by a
-/// factor of `2^63`. Beyond that the error is about `n 2^-106 |sum|`, far below the precision of an image.
+/// `2^-53 |sum|`, so their sum is below `2^53 g`, and exact. Samples of single precision have `g = 2^-23` of the smallest: a thousand of them may differ by a
+/// factor of `2^63`, a million by `2^43`. Beyond that the error is about `n 2^-106 |sum|`, far below the precision of an image.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sum {
     high: f64,
