@@ -7,6 +7,7 @@ mod webdriver;
 
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 use serde_json::{Value, json};
 use webdriver::{Browser, missing_tools};
@@ -95,12 +96,17 @@ fn the_page_works_in_a_browser() {
     assert!(beyond.is_empty(), "{beyond:?}");
     assert_eq!(browser.requests_to_the_network(), Vec::<String>::new());
     assert_eq!(browser.complaints(), Vec::<String>::new());
-    // A planted error is found: silence means something.
+    // Silence means something: a planted error and a planted request are found.
     browser.execute("setTimeout(() => { throw new Error('planted'); })");
-    browser.execute("fetch('https://example.org/planted').catch(() => {})");
     browser.execute_async("setTimeout(arguments[arguments.length - 1], 200)");
     let complaints = browser.complaints();
     assert!(complaints.iter().any(|message| message.contains("planted")), "{complaints:?}");
+    browser.execute("setTimeout(() => location.assign('http://127.0.0.1:9/planted'))");
+    let asked = |_| {
+        std::thread::sleep(Duration::from_millis(100));
+        browser.requests_to_the_network().iter().any(|address| address.ends_with("/planted"))
+    };
+    assert!((0..100).any(asked), "the planted request was not seen");
 }
 
 fn the_wipe_divides_two_images(browser: &Browser) {

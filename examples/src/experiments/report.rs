@@ -34,7 +34,9 @@ pub struct Row {
     pub seconds: f64,
     /// Rays of a rendering, closest hits and visibility, rounded.
     pub rays: u64,
-    /// Variance of a pixel's value from one rendering to another; mean over pixels and channels.
+    /// Variance of a pixel's value from one rendering to another; mean over pixels and channels. Infinite for a single rendering, which
+    /// is `null` in the file.
+    #[serde(deserialize_with = "infinite_if_null")]
     pub variance: f64,
     /// Relative mean squared error against the reference.
     pub rel_mse: f64,
@@ -53,6 +55,11 @@ pub struct Claim {
     pub ci95: [f64; 2],
     /// Whether the claim holds.
     pub holds: bool,
+}
+
+/// JSON has no infinity.
+fn infinite_if_null<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
 impl Row {
@@ -126,6 +133,10 @@ mod tests {
         });
         assert_eq!(json, expected);
         assert_eq!(serde_json::from_value::<Report>(json).unwrap(), report);
+        let single = Row { variance: f64::INFINITY, ..report.rows[0].clone() };
+        let json = serde_json::to_string(&single).unwrap();
+        assert!(json.contains(r#""variance":null"#));
+        assert_eq!(serde_json::from_str::<Row>(&json).unwrap(), single);
         let text = report.to_string();
         assert!(text.contains("cornell-box, path, sampler sobol, spp 64") && text.contains("0.2500 .. 0.7500  holds"));
     }

@@ -110,7 +110,8 @@ impl Plot {
     /// The numbers, for those who cannot see the lines.
     fn description(&self) -> String {
         let lines = self.series.iter().map(|series| {
-            let points = series.points.iter().map(|(x, y)| format!("{:.3e} at {x:.3e}", y.value));
+            let known = series.points.iter().filter(|(_, y)| y.value.is_finite());
+            let points = known.map(|(x, y)| format!("{:.3e} at {x:.3e}", y.value));
             format!("{}: {}", series.name, points.collect::<Vec<_>>().join(", "))
         });
         format!("{}. {}", self.title, lines.collect::<Vec<_>>().join("; "))

@@ -162,7 +162,7 @@ impl Browser {
         self.log("browser").iter().filter(|entry| loud(entry)).map(|entry| entry["message"].to_string()).collect()
     }
 
-    /// Addresses beyond files and data that were asked for since the last call.
+    /// Addresses beyond files, data and the browser's own pages that were asked for since the last call.
     pub(crate) fn requests_to_the_network(&self) -> Vec<String> {
         let address = |entry: &Value| {
             let event: Value = serde_json::from_str(entry["message"].as_str()?).ok()?;
@@ -170,7 +170,8 @@ impl Browser {
             (message["method"] == "Network.requestWillBeSent")
                 .then(|| message["params"]["request"]["url"].as_str().map(str::to_owned))?
         };
-        let local = |address: &String| ["file:", "data:", "about:"].iter().any(|scheme| address.starts_with(scheme));
+        let local =
+            |address: &String| ["file:", "data:", "about:", "chrome:"].iter().any(|scheme| address.starts_with(scheme));
         self.log("performance").iter().filter_map(address).filter(|address| !local(address)).collect()
     }
 }
