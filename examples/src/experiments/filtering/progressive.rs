@@ -12,13 +12,13 @@ const RADIUS: f32 = 4.0;
 pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failure> {
     let mut report = context.report();
     let size = context.effort([120, 90], [320, 240]);
-    let mut setups = vec![(Setup::builtin(context, "interior", size)?, context.effort(4, 5))];
+    let mut setups = vec![(Setup::builtin(context, "interior", size)?, context.effort(4, 6))];
     if let Some(setup) = Setup::asset(context, "living-room/scene_mi3.xml", context.effort([128, 72], [320, 180]))? {
-        setups.push((setup, context.effort(3, 4)));
+        setups.push((setup, context.effort(3, 5)));
     }
     for (setup, trials) in &setups {
         let reference = setup.reference(context, context.effort(1280, 2048))?;
-        for &samples in context.effort(&[1, 4, 16][..], &[1, 4, 16, 64, 256]) {
+        for &samples in context.effort(&[1, 4, 16][..], &[1, 4, 16, 64]) {
             let usual = FilterSettings { filter_radius: RADIUS, ..FilterSettings::default() };
             let hash = RenderSettings {
                 path_filter: Some(PathFilterName::PsfHash),
