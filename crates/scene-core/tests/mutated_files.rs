@@ -18,7 +18,7 @@ const SCENE: &str = r#"<scene version="3.0.0">
 <sensor type="thinlens"><float name="fov" value="40"/><float name="aperture_radius" value="0.1"/><float name="focus_distance" value="3"/>
   <transform name="to_world"><lookat origin="0, 1, 5" target="0, 0, 0" up="0, 1, 0"/></transform>
   <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="6"/><rfilter type="gaussian"/></film>
-  <sampler type="independent"><integer name="sample_count" value="$spp"/></sensor>
+  <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler></sensor>
 <bsdf type="twosided" id="wall"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="t.png"/></texture></bsdf></bsdf>
 <bsdf type="roughdielectric" id="glass"><float name="alpha" value="0.1"/><float name="int_ior" value="1.5"/></bsdf>
 <bsdf type="bumpmap" id="bumps"><texture type="checkerboard" name="arbitrary"><rgb name="color0" value="0.1 0.2 0.3"/></texture><bsdf type="roughplastic"/></bsdf>
@@ -107,7 +107,21 @@ enum Change {
 
 fn change() -> impl Strategy<Value = Change> {
     let odd = prop::sample::select(vec![
-        "-1", "99999999999999999999", "nan", "1e39", "/", "<", ">", "\"", "$", "\0", "\u{fffd}", "\n", "4294967295", " ", "id",
+        "-1",
+        "99999999999999999999",
+        "nan",
+        "1e39",
+        "/",
+        "<",
+        ">",
+        "\"",
+        "$",
+        "\0",
+        "\u{fffd}",
+        "\n",
+        "4294967295",
+        " ",
+        "id",
     ]);
     prop_oneof![
         4 => (any::<Index>(), any::<u8>()).prop_map(|(at, to)| Change::Byte(at, to)),
