@@ -57,6 +57,13 @@ pub struct Claim {
     pub holds: bool,
 }
 
+impl Claim {
+    /// Whether anything is claimed at all: other numbers are only measured.
+    pub fn is_claimed(&self) -> bool {
+        self.paper != "-"
+    }
+}
+
 /// JSON has no infinity.
 fn infinite_if_null<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
@@ -101,7 +108,11 @@ impl fmt::Display for Report {
         for claim in &self.claims {
             let [low, high] = claim.ci95;
             let interval = format!("{low:.4} .. {high:.4}");
-            let verdict = if claim.holds { "holds" } else { "does not hold" };
+            let verdict = match (claim.is_claimed(), claim.holds) {
+                (false, _) => "measured",
+                (true, true) => "holds",
+                (true, false) => "does not hold",
+            };
             writeln!(
                 f,
                 "{:<width$} {:>paper$} {:>9.4} {interval:>19}  {verdict}",

@@ -33,7 +33,7 @@ fn row(claim: &Claim, all_hold: bool) -> Markup {
             td.number { (claim.paper) }
             td.number { (with_interval(&Estimate { value: claim.measured, ci95: claim.ci95 })) }
             td {
-                @if claim.holds { span.holds { "✓ holds" } } @else { span.broken { "✗ does not hold" } }
+                @if !claim.is_claimed() { "measured" } @else if claim.holds { span.holds { "✓ holds" } } @else { span.broken { "✗ does not hold" } }
             }
             @if !all_hold { td.note { (why_not(claim)) } }
         }
@@ -132,5 +132,7 @@ mod tests {
         let text = claims(&[claim("> 1", 2.0, [1.5, 2.5], true), claim("> 1", 0.5, [0.4, 0.6], false)]).into_string();
         assert!(text.contains("✓ holds") && text.contains("✗ does not hold") && text.contains("&lt;c&gt;"), "{text}");
         assert!(claims(&[]).into_string().is_empty());
+        let text = claims(&[claim("-", 2.0, [1.5, 2.5], true)]).into_string();
+        assert!(text.contains("measured</td>") && !text.contains("holds"), "nothing is claimed: {text}");
     }
 }

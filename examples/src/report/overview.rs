@@ -70,7 +70,7 @@ impl Overview {
             _ => "Experiments".to_owned(),
         };
         let quick = self.sections.iter().any(|section| section.report.quick);
-        let all = self.sections.iter().flat_map(|section| &section.report.claims);
+        let all = self.sections.iter().flat_map(|section| &section.report.claims).filter(|c| c.is_claimed());
         let (held, count) = all.fold((0, 0), |(held, count), claim| (held + u32::from(claim.holds), count + 1));
         let lead = html! {
             p {
@@ -93,7 +93,7 @@ impl Overview {
                         thead { tr { th scope="col" { "experiment" } th scope="col" { "what it shows" } th.number scope="col" { "claims that hold" } } }
                         tbody {
                             @for section in &self.sections {
-                                @let claims = &section.report.claims;
+                                @let claims: Vec<_> = section.report.claims.iter().filter(|claim| claim.is_claimed()).collect();
                                 @let held = claims.iter().filter(|claim| claim.holds).count();
                                 tr.fails[held < claims.len()] {
                                     th scope="row" { a href={ "#" (section.report.experiment) } { (section.report.experiment) } }
