@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use base64::{DecodeError, Engine as _, alphabet};
+
 use super::error::{Place, Result};
 
 /// The bytes that a URI names, and the file that they came from, if any.
@@ -23,31 +26,21 @@ pub(super) fn read(uri: &str, directory: &Path, place: &Place) -> Result<(Vec<u8
     Ok((bytes, Some(path)))
 }
 
-/// Bytes of base64 (RFC 4648, section 4). Padding may be missing.
+/// Padding may be missing, and unused bits anything.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &alphabet::STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::RequireNone)
+        .with_decode_allow_trailing_bits(true),
+);
+
+/// Bytes of base64 (RFC 4648, section 4), with or without padding.
 fn base64(text: &str) -> std::result::Result<Vec<u8>, String> {
     let digits = text.trim_end_matches('=');
-    if digits.len() % 4 == 1 {
-        return Err(format!("{} base64 digits encode no whole number of bytes", digits.len()));
-    }
-    let mut bytes = Vec::with_capacity(digits.len() / 4 * 3 + 3);
-    let (mut bits, mut count) = (0u32, 0);
-    for (digit, at) in digits.bytes().zip(0..) {
-        let value = match digit {
-            b'A'..=b'Z' => digit - b'A',
-            b'a'..=b'z' => digit - b'a' + 26,
-            b'0'..=b'9' => digit - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return Err(format!("`{}` at {at} is no base64 digit", digit.escape_ascii())),
-        };
-        bits = bits << 6 | u32::from(value);
-        count += 6;
-        if count >= 8 {
-            count -= 8;
-            bytes.push((bits >> count) as u8);
-        }
-    }
-    Ok(bytes)
+    BASE64.decode(digits).map_err(|error| match error {
+        DecodeError::InvalidByte(at, digit) => format!("`{}` at {at} is no base64 digit", digit.escape_ascii()),
+        _ => format!("{} base64 digits encode no whole number of bytes", digits.len()),
+    })
 }
 
 /// `%20` and its like; what is no such escape stays.
