@@ -222,7 +222,7 @@ fn frames_and_eyes_are_rendered_together() {
     let of = |eye: &str| ["exr", "png"].map(|end| format!("cornell-box-{eye}.{end}"));
     let expected: Vec<String> = ["000-left", "000-right", "001-left", "001-right"].iter().flat_map(|e| of(e)).collect();
     assert_eq!(names(&folder.path().join("pairs")), expected);
-    let read = |name: &str| LayeredImage::read_exr(&folder.path().join(name)).unwrap();
+    let read = |name: &str| image(folder.path(), name);
     let mean = |name: &str| {
         let rgb = read(name).rgb().unwrap();
         rgb.iter().flatten().sum::<f32>() / rgb.len() as f32

@@ -9,6 +9,11 @@ use super::Report;
 use crate::output::{OutputError, Progress, check_writable, save_image, write_json};
 use crate::program::Failure;
 
+/// A seed for something that has a name, independent of those of all other names.
+pub(crate) fn named_seed(seed: u64, name: &str) -> u64 {
+    name.bytes().fold(seed, |hash, byte| Replications::seed(hash, u64::from(byte)))
+}
+
 /// How to run an experiment.
 #[derive(Clone, Debug)]
 pub struct Context {
@@ -32,7 +37,7 @@ impl Context {
 
     /// The seed of trial number `trial` of `what`, independent of all others.
     pub fn seed_of(&self, what: &str, trial: u64) -> u64 {
-        Replications::seed(what.bytes().fold(self.seed, |hash, byte| Replications::seed(hash, u64::from(byte))), trial)
+        Replications::seed(named_seed(self.seed, what), trial)
     }
 
     /// An empty report of this experiment.

@@ -26,6 +26,7 @@ use crate::program::Failure;
 use crate::report::Overview;
 
 pub use context::Context;
+pub(crate) use context::named_seed;
 pub use report::{Claim, Report, Row};
 pub use setup::Setup;
 pub use trials::{Ratio, Trials, ratio_of_means};

@@ -40,9 +40,7 @@ impl Finish for PathFilterName {
         observe: Observe<'_>,
     ) -> Result<Rendering, RenderError> {
         let (settings, sensor) = (run.settings, run.scene.sensor());
-        let mut filtering = settings.filtering.clone();
-        // Occlusion has no colour.
-        filtering.filter_as_stored |= settings.estimator == EstimatorName::Ao;
+        let filtering = settings.path_filtering();
         let filter = filtering.filter(*self, sensor)?;
         let [width, height] = sensor.resolution();
         let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));

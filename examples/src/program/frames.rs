@@ -111,7 +111,6 @@ fn settings(arguments: &FramesArguments, frames: &[Frame]) -> RenderSettings {
     let radius = frames.first().map_or(0.0, |frame| frame.scene.bounding_sphere().1);
     let mut filtering = arguments.filtering.clone();
     filtering.filter_time = arguments.filter_time.map(|time| time as f32);
-    filtering.filter_as_stored |= arguments.estimator == EstimatorName::Ao;
     RenderSettings {
         estimator: arguments.estimator,
         sampler: SamplerName::GlobalSobol,
@@ -148,7 +147,7 @@ fn render<E: Observable>(
         .map(|(Frame { scene, time, .. }, estimator)| View { scene, estimator, time: *time })
         .collect();
     let sensor = views.first().ok_or("no frames")?.scene.sensor();
-    let filtering = &settings.filtering;
+    let filtering = settings.path_filtering();
     if filtering.filter_extra > 0 || filtering.filter_visibility {
         return Err(FilterError::Setting("--filter-extra and --filter-visibility are for single images").into());
     }
@@ -182,7 +181,7 @@ fn annotated(arguments: &FramesArguments, settings: &RenderSettings, film: &Film
     let mut image = film.develop(0);
     let pixels = u64::from(film.width()) * u64::from(film.height());
     image.set_attribute(SAMPLES_PER_PIXEL, film.samples() / pixels.max(1))?;
-    image.set_attribute(PATH_FILTER, filtered::describe(arguments.filter, &settings.filtering))?;
+    image.set_attribute(PATH_FILTER, filtered::describe(arguments.filter, &settings.path_filtering()))?;
     image.set_attribute("scene", arguments.scenes.join(", "))?;
     Ok(image)
 }

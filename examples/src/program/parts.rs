@@ -1,12 +1,11 @@
 //! `lichtwerk render --checkpoint`, `--shard`, and `lichtwerk merge`: renderings that are continued, and put together from parts.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
-use scene_core::film::{LayeredImage, SAMPLES_PER_PIXEL};
+use scene_core::film::{Film, LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene};
 
 use super::render::{EstimatorName, RenderSettings, attributes};
@@ -75,14 +74,9 @@ impl Part {
             Budget::Samples(samples) => samples,
             Budget::Seconds(_) => 0,
         };
-        let described = Described {
-            rendering: identity(arguments, scene, settings),
-            planned,
-            attributes: attributes(scene, settings),
-            smoothing: settings.smoothing(),
-            ..Described::default()
-        };
-        let mut range = 0..planned;
+        let described =
+            Described { rendering: identity(arguments, scene, settings), planned, ..described(scene, settings) };
+        let mut range = settings.first..settings.first + planned;
         if let Some(shard) = arguments.shard {
             if planned == 0 {
                 return Err("--shard divides a number of samples: give --spp, not --time".into());
@@ -115,17 +109,6 @@ impl Part {
             settings.budget = Budget::Samples(range.end - first);
         }
         Ok(Self { path: arguments.checkpoint.clone(), described, first, earlier })
-    }
-
-    /// What nobody continues.
-    pub(super) fn whole(scene: &ReferenceScene, settings: &RenderSettings, rendering: Rendering) -> Checkpoint {
-        let described = Described {
-            attributes: attributes(scene, settings),
-            smoothing: settings.smoothing(),
-            ..Described::default()
-        };
-        let described = done(&described, settings.first, &rendering.progress());
-        Checkpoint { described, film: rendering.film }
     }
 
     /// All that is known after the given rendering.
@@ -166,6 +149,11 @@ impl Keeper<'_> {
         self.last = Instant::now();
         Ok(())
     }
+}
+
+/// What the image of such a rendering will be like.
+pub(super) fn described(scene: &ReferenceScene, settings: &RenderSettings) -> Described {
+    Described { attributes: attributes(scene, settings), smoothing: settings.smoothing(), ..Described::default() }
 }
 
 /// With the numbers of a rendering so far.
@@ -218,22 +206,32 @@ fn top_level_lines(pretty: &str) -> Vec<String> {
 }
 
 /// The image of a checkpoint: what one process would have written.
-pub(super) fn image_of(checkpoint: &Checkpoint) -> Result<LayeredImage, Failure> {
+pub(super) fn image_of(checkpoint: &Checkpoint) -> Result<LayeredImage, LayeredImageError> {
     let Checkpoint { described, film } = checkpoint;
-    let mut image = film.develop(described.light_paths);
+    finished(described, film, described.light_paths, described.count())
+}
+
+/// The image of a rendering.
+pub(super) fn develop(described: &Described, rendering: &Progress<'_>) -> Result<LayeredImage, LayeredImageError> {
+    finished(described, rendering.film, rendering.light_paths, rendering.samples)
+}
+
+fn finished(
+    described: &Described,
+    film: &Film,
+    light_paths: u64,
+    samples: u64,
+) -> Result<LayeredImage, LayeredImageError> {
+    let mut image = film.develop(light_paths);
     if let Some(sides) = described.smoothing {
         smooth(&mut image, sides)?;
     }
-    annotate(&mut image, &described.attributes, described.count());
-    Ok(image)
-}
-
-/// Attributes are a service: one that does not fit is no reason to lose the image.
-pub(super) fn annotate(image: &mut LayeredImage, attributes: &BTreeMap<String, String>, samples: u64) {
-    for (key, text) in attributes {
+    for (key, text) in &described.attributes {
+        // Attributes are a service: one that does not fit is no reason to lose the image.
         let _ = image.set_attribute(key.as_str(), text.clone());
     }
     let _ = image.set_attribute(SAMPLES_PER_PIXEL, samples);
+    Ok(image)
 }
 
 /// Puts parts together.
@@ -281,7 +279,7 @@ fn merged_checkpoints(arguments: &MergeArguments) -> Result<LayeredImage, Failur
     if let Some(path) = &arguments.checkpoint {
         whole.write(path)?;
     }
-    image_of(&whole)
+    Ok(image_of(&whole)?)
 }
 
 fn named(path: &Path, error: &impl std::fmt::Display) -> Failure {

@@ -13,7 +13,7 @@ use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
 use super::filtered::PATH_FILTER;
 use super::finish::{Finish, Plain, Run};
-use super::parts::{Part, annotate, image_of};
+use super::parts::{Part, described, develop, image_of};
 use super::{Failure, RenderArguments, filtered, report};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::estimators::{
@@ -21,7 +21,7 @@ use crate::estimators::{
     PhotonLights, VirtualLights,
 };
 use crate::filters::{FilterSettings, PathFilterName};
-use crate::light_paths::{LightPathSettings, smooth};
+use crate::light_paths::LightPathSettings;
 use crate::light_photons::LightPhotonSettings;
 use crate::output::{
     Checkpoint, Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image,
@@ -197,6 +197,14 @@ impl RenderSettings {
             roulette: self.roulette(),
             first_event: FirstEvent::Any,
         }
+    }
+
+    /// The path space filter's settings for the estimator.
+    pub(super) fn path_filtering(&self) -> FilterSettings {
+        let mut filtering = self.filtering.clone();
+        // Occlusion has no colour.
+        filtering.filter_as_stored |= self.estimator == EstimatorName::Ao;
+        filtering
     }
 
     /// Sides of the tile of the discontinuity buffer that smooths the image, if it is asked for.
@@ -420,11 +428,7 @@ pub fn render_to_image(
     observe: impl FnMut(Pass<'_>) -> ControlFlow<()> + Send,
 ) -> Result<(LayeredImage, Rendering), RenderError> {
     let rendering = estimate(scene, settings, observe)?;
-    let mut image = rendering.film.develop(rendering.light_paths);
-    if let Some(sides) = settings.smoothing() {
-        smooth(&mut image, sides)?;
-    }
-    annotate(&mut image, &attributes(scene, settings), rendering.samples);
+    let image = develop(&described(scene, settings), &rendering.progress())?;
     Ok((image, rendering))
 }
 
@@ -470,9 +474,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     if let Some((done, _)) = &earlier {
         settings.first = *done;
     }
-    let part = if earlier.is_none() { Some(Part::of(arguments, &scene, &mut settings)?) } else { None };
+    let part = Part::of(arguments, &scene, &mut settings)?;
     let mut watch = Watch::new(arguments, &settings, &name);
-    let mut keeper = part.as_ref().and_then(|part| part.keeper(arguments.checkpoint_seconds));
+    let mut keeper = part.keeper(arguments.checkpoint_seconds);
     let rendering = estimate(&scene, &settings, |pass| {
         if let Some(Err(error)) = keeper.as_mut().map(|keeper| keeper.observe(&pass)) {
             watch.progress.suspend(|| report(&format!("warning: {error}")));
@@ -480,10 +484,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
         watch.observe(pass)
     })?;
     let (samples, threads) = (rendering.samples, rendering.threads);
-    let done = match &part {
-        Some(part) => part.with(rendering)?,
-        None => Part::whole(&scene, &settings, rendering),
-    };
+    let done = part.with(rendering)?;
     let mut image = image_of(&done)?;
     if let Some((_, earlier)) = earlier {
         image = LayeredImage::merge(&[earlier, image])?;

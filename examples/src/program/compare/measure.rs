@@ -6,7 +6,7 @@ use qmc_sampling::Replications;
 use scene_core::ReferenceScene;
 use scene_core::film::LayeredImage;
 
-use crate::experiments::Trials;
+use crate::experiments::{Trials, named_seed};
 use crate::output::{Interrupt, Progress};
 use crate::program::{Failure, RenderSettings, render_to_image};
 use crate::render::Budget;
@@ -63,8 +63,7 @@ pub(super) fn budgets(whole: Budget) -> Vec<Budget> {
 impl Plan<'_> {
     /// The seed of a rendering, independent of all others: by the estimator's name, so that it does not depend on who else takes part.
     fn seed_of(&self, name: &str, budget: usize, trial: u64) -> u64 {
-        let of_name = name.bytes().fold(self.seed, |hash, byte| Replications::seed(hash, u64::from(byte)));
-        Replications::seed(Replications::seed(of_name, budget as u64), trial)
+        Replications::seed(Replications::seed(named_seed(self.seed, name), budget as u64), trial)
     }
 
     /// Renders everything: for each estimator, its renderings by budget.
