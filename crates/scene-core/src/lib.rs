@@ -25,6 +25,8 @@ pub mod reference;
 pub mod texture;
 mod traits;
 mod walk;
+#[cfg(any(feature = "gltf", feature = "luxcore"))]
+mod warnings;
 
 pub use counting::{Counting, RayCounts};
 pub use frame::Frame;

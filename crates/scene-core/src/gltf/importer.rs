@@ -15,6 +15,7 @@ use crate::film::Filter;
 use crate::reference::{Instance, Light, MaterialId, SceneDescription, Shape, ShapeId};
 use crate::texture::Image;
 use crate::traits::Rgb;
+use crate::warnings::Warnings;
 
 /// State of an import.
 pub(super) struct Importer<'s> {
@@ -23,9 +24,7 @@ pub(super) struct Importer<'s> {
     pub(super) directory: &'s Path,
     pub(super) images: HashMap<ImageKey, Arc<Image>>,
     description: SceneDescription,
-    /// First place of each kind of warning, and how often it came.
-    warnings: Vec<(Place, String, usize)>,
-    warned: HashMap<String, usize>,
+    warnings: Warnings,
 }
 
 impl<'s> Importer<'s> {
@@ -36,20 +35,13 @@ impl<'s> Importer<'s> {
             directory,
             images: HashMap::new(),
             description: SceneBuilder::new("").finish(),
-            warnings: Vec::new(),
-            warned: HashMap::new(),
+            warnings: Warnings::default(),
         }
     }
 
     /// Warns; the same message at other places is counted only.
     pub(super) fn warn(&mut self, place: &Place, message: impl Into<String>) {
-        let message = message.into();
-        if let Some(&index) = self.warned.get(&message) {
-            self.warnings[index].2 += 1;
-            return;
-        }
-        self.warned.insert(message.clone(), self.warnings.len());
-        self.warnings.push((place.clone(), message, 1));
+        self.warnings.add(place, message);
     }
 
     pub(super) fn run(mut self) -> Result<SceneDescription> {
@@ -151,11 +143,7 @@ impl<'s> Importer<'s> {
         description.name = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         description.filter = Filter::GAUSSIAN;
         description.source = Some(source.file.to_path_buf());
-        let lines = warnings.into_iter().map(|(place, message, count)| {
-            let again = if count > 1 { format!(" ({count} times)") } else { String::new() };
-            format!("{place}: {message}{again}")
-        });
-        description.warnings.extend(lines);
+        description.warnings.extend(warnings.into_lines());
         description
     }
 }

@@ -15,6 +15,7 @@ use crate::mitsuba::ply;
 use crate::mitsuba::raw_mesh::MeshOptions;
 use crate::reference::{Instance, Light, SceneDescription, Shape, ShapeId, TriangleMesh};
 use crate::traits::Rgb;
+use crate::warnings::Warnings;
 
 /// State of an import.
 pub(super) struct Importer<'d> {
@@ -23,9 +24,7 @@ pub(super) struct Importer<'d> {
     pub(super) description: SceneDescription,
     pub(super) materials: HashMap<String, ImportedMaterial>,
     meshes: HashMap<PathBuf, (ShapeId, Arc<TriangleMesh>)>,
-    /// First place of each kind of warning, and how often it came.
-    warnings: Vec<(Place, String, usize)>,
-    warned: HashMap<String, usize>,
+    warnings: Warnings,
 }
 
 impl<'d> Importer<'d> {
@@ -36,20 +35,13 @@ impl<'d> Importer<'d> {
             description: SceneBuilder::new("").finish(),
             materials: HashMap::new(),
             meshes: HashMap::new(),
-            warnings: Vec::new(),
-            warned: HashMap::new(),
+            warnings: Warnings::default(),
         }
     }
 
     /// Warns; the same message at other places is counted only.
     pub(super) fn warn_at(&mut self, place: &Place, message: impl Into<String>) {
-        let message = message.into();
-        if let Some(&index) = self.warned.get(&message) {
-            self.warnings[index].2 += 1;
-            return;
-        }
-        self.warned.insert(message.clone(), self.warnings.len());
-        self.warnings.push((place.clone(), message, 1));
+        self.warnings.add(place, message);
     }
 
     /// Warns of everything in a group that no conversion asked for.
@@ -75,11 +67,7 @@ impl<'d> Importer<'d> {
         self.description.name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         self.description.filter = Filter::GAUSSIAN;
         self.description.source = Some(path.to_path_buf());
-        let lines = self.warnings.into_iter().map(|(place, message, count)| {
-            let again = if count > 1 { format!(" ({count} times)") } else { String::new() };
-            format!("{place}: {message}{again}")
-        });
-        self.description.warnings.extend(lines);
+        self.description.warnings.extend(self.warnings.into_lines());
         Ok(self.description)
     }
 
