@@ -1,43 +1,23 @@
 //! `lichtwerk compare` from end to end.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod command;
 mod signals;
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use command::{answer, fails, lichtwerk, names, text};
 use lichtwerk::experiments::Report;
 
 /// A comparison of a few pixels.
 const TINY: [&str; 8] = ["compare", "cornell-box", "--size", "8x6", "--spp", "4", "--max-depth", "3"];
 
-fn lichtwerk(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lichtwerk"));
-    command.args(TINY).args(arguments).current_dir(folder).stdin(Stdio::null());
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    lichtwerk(folder, arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-fn succeeds(folder: &Path, arguments: &[&str]) -> String {
-    let output = run(folder, arguments);
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""), "{arguments:?}");
-    text(&output.stdout).to_owned()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
+/// That comparison with more arguments.
+fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&TINY, more].concat()
 }
 
 fn report(path: &Path) -> Report {
@@ -49,7 +29,7 @@ fn a_page_a_report_and_pictures_are_written_and_the_reference_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let arguments = ["--estimators", "path,bdpt:heuristic=balance", "--trials", "2", "--reference-spp", "16"];
-    let first = succeeds(folder, &arguments);
+    let first = answer(folder, &tiny(&arguments));
     assert!(first.contains("16 samples per pixel") && first.contains("rendered now"), "{first}");
     let out = folder.join("out/compare-cornell-box");
     assert_eq!(names(&out), ["bdpt-heuristic-balance.png", "path.png", "report.html", "report.json"]);
@@ -70,7 +50,7 @@ fn a_page_a_report_and_pictures_are_written_and_the_reference_is_kept() {
     let cached = folder.join("out/references");
     let [file] = &names(&cached)[..] else { panic!("{:?}", names(&cached)) };
     let bytes = fs::read(cached.join(file)).unwrap();
-    let second = succeeds(folder, &[&arguments[..], &["--out", "second"]].concat());
+    let second = answer(folder, &tiny(&[&arguments[..], &["--out", "second"]].concat()));
     assert!(second.contains("reused"), "{second}");
     assert_eq!(fs::read(cached.join(file)).unwrap(), bytes);
     let again = report(&folder.join("second/report.json"));
@@ -81,7 +61,7 @@ fn a_page_a_report_and_pictures_are_written_and_the_reference_is_kept() {
     // The user's own reference, and one estimator only.
     let path = format!("out/references/{file}");
     let own = ["--estimators", "path", "--trials", "1", "--reference", &path, "--out", "third"];
-    assert!(succeeds(folder, &own).contains(&path));
+    assert!(answer(folder, &tiny(&own)).contains(&path));
     assert_eq!(names(&folder.join("third")), ["path.png", "report.html", "report.json"]);
 }
 
@@ -100,13 +80,7 @@ fn errors_come_before_rendering_and_name_the_entry() {
         (&["--estimators", "path", "--out", "file/out"], &["file/out"]),
         (&["--estimators", "path", "--cache", "file/cache"], &["file/cache"]),
     ] {
-        let output = run(folder, arguments);
-        let message = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
-        assert!(message.starts_with("error: ") && message.lines().count() == 1, "{arguments:?}: {message}");
-        for reason in reasons {
-            assert!(message.contains(reason), "{arguments:?}: '{message}' does not say '{reason}'");
-        }
+        fails(folder, &tiny(arguments), reasons);
         assert!(!folder.join("out/references").exists(), "{arguments:?}");
     }
 }
@@ -119,9 +93,8 @@ fn ctrl_c_keeps_what_was_measured() {
     }
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["--estimators", "path", "--trials", "1000", "--reference-spp", "16", "--out", "out"];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lichtwerk"));
-    command.args(["compare", "cornell-box", "--size", "8x6", "--time", "4"]).args(arguments);
-    let child = command.current_dir(folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let arguments = [&["compare", "cornell-box", "--size", "8x6", "--time", "4"][..], &arguments].concat();
+    let child = lichtwerk(folder.path(), &arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     // The first rendering takes a quarter of a second, and all of them an hour. The cache tells that the first one has begun.
     while !folder.path().join("out/references").exists() {
         std::thread::sleep(Duration::from_millis(10));

@@ -1,6 +1,7 @@
 //! The `lichtwerk` program from end to end.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod command;
 mod signals;
 
 use std::fs;
@@ -10,53 +11,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
+use command::{fails, lichtwerk, names, run, succeeds, text};
 use lichtwerk::output::Checkpoint;
 use scene_core::film::LayeredImage;
 use tempfile::TempDir;
 
-fn lichtwerk(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lichtwerk"));
-    command.args(arguments).current_dir(folder).stdin(Stdio::null());
-    command
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    lichtwerk(folder, arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-/// Runs what must succeed in silence.
-fn succeeds(folder: &Path, arguments: &[&str]) {
-    let output = run(folder, arguments);
-    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""), "{arguments:?}");
-    assert_eq!(text(&output.stdout), "", "{arguments:?}");
-}
-
-/// Runs what must fail with one line that holds all `reasons`.
-fn fails(folder: &Path, arguments: &[&str], reasons: &[&str]) {
-    let output = run(folder, arguments);
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
-    assert!(message.starts_with("error: ") && message.lines().count() == 1, "{arguments:?}: {message}");
-    for reason in reasons {
-        assert!(message.contains(reason), "{arguments:?}: '{message}' does not say '{reason}'");
-    }
-    assert_eq!(text(&output.stdout), "", "{arguments:?}");
-}
-
 /// The least rendering: a few pixels of the Cornell box.
 fn tiny<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&["render", "cornell-box", "--size", "8x6", "--spp", "1"], more].concat()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 /// A Mitsuba file with a camera, and `content` from the third line.
