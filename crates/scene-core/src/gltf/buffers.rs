@@ -20,14 +20,15 @@ pub(super) struct Buffers {
 
 impl Buffers {
     pub(super) fn read(source: &mut Source, directory: &Path) -> Result<Self> {
-        let binary = source.binary.take();
+        // For the first buffer alone.
+        let mut binary = source.binary.take();
         let mut buffers = Vec::new();
         for (buffer, index) in source.document.as_json().buffers.iter().zip(0..) {
             let place = source.place("buffers", index, buffer.name.as_deref());
-            let bytes = match (&buffer.uri, &binary) {
-                (Some(uri), _) => uri::read(uri, directory, &place)?.0,
-                (None, Some(binary)) if index == 0 => binary.clone(),
-                (None, _) => return Err(place.invalid("it has no `uri`, and there is no binary chunk for it")),
+            let chunk = binary.take().filter(|_| index == 0);
+            let bytes = match &buffer.uri {
+                Some(uri) => uri::read(uri, directory, &place)?.0,
+                None => chunk.ok_or_else(|| place.invalid("it has no `uri`, and there is no binary chunk for it"))?,
             };
             let promised = buffer.byte_length.0;
             if (bytes.len() as u64) < promised {
