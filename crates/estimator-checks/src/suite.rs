@@ -158,6 +158,23 @@ impl Suite {
 /// The right to one statistical decision: a name, a significance level, a seed.
 ///
 /// The functions of this crate take it by value, so that one registration pays for one decision. It cannot be cloned.
+///
+/// ```
+/// use estimator_checks::{Check, ChiSquare, Interval};
+/// let check = Check::new("square root", 1e-6)?;
+/// ChiSquare::on(Interval::UNIT).run(check, |[u, ..]: [f64; 3]| Some(u.sqrt()), |x| 2.0 * x).expect_pass();
+/// # Ok::<(), estimator_checks::SuiteError>(())
+/// ```
+///
+/// A second decision, or a second attempt after a rejection, would not be paid for:
+///
+/// ```compile_fail,E0382
+/// use estimator_checks::{Check, ChiSquare, Interval};
+/// let check = Check::new("square root", 1e-6)?;
+/// ChiSquare::on(Interval::UNIT).run(check, |[u, ..]: [f64; 3]| Some(u.sqrt()), |x| 2.0 * x).expect_pass();
+/// ChiSquare::on(Interval::UNIT).run(check, |[u, ..]: [f64; 3]| Some(u.sqrt()), |x| 2.0 * x).expect_pass();
+/// # Ok::<(), estimator_checks::SuiteError>(())
+/// ```
 #[derive(Debug)]
 #[must_use]
 pub struct Check {

@@ -10,6 +10,7 @@
 //! |---|---|
 //! | weight light and BSDF samples | [`Power::TWO`], [`Balance`] with an array of two densities |
 //! | weight the techniques of bidirectional path tracing | the same, [`Maximum`] or [`Cutoff`], with [`Lazy`] or your own [`Densities`] |
+//! | let the compiler tell densities by area from those by solid angle | [`measure::Density`] |
 //! | decide by geometry instead of densities | [`Stratification`], [`GeometryPartition`]; [`Remainder`] while tracing |
 //! | take several samples per technique, or one of a technique chosen at random | [`MultiSample`], [`OneSample`] |
 //! | have the least variance | [`ProgressiveOptimal`], [`OptimalMoments`] |
@@ -50,6 +51,7 @@ mod heuristic;
 mod lazy;
 mod math;
 mod maximum;
+pub mod measure;
 mod models;
 mod optimal;
 mod partition;

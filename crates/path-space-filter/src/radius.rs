@@ -40,6 +40,13 @@ pub enum RadiusError {
 /// assert!((radius.at(16, 2.0) - 0.5 * at_2_m).abs() < 1e-6);
 /// # Ok::<(), path_space_filter::RadiusError>(())
 /// ```
+///
+/// A number alone is no radius, for nobody could tell pixels from metres:
+///
+/// ```compile_fail,E0308
+/// use path_space_filter::PathSpaceFilter;
+/// let filter = PathSpaceFilter::new(3.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Radius {
     /// The part that does not depend on the distance.

@@ -6,6 +6,22 @@ use mis_heuristics::{GeometryPartition, PartitionError};
 ///
 /// The geometry term has the unit 1/length^2, and so has its threshold: the same number means another image cost after
 /// the scene has been scaled (P0, section 4.1.2). The normalised threshold does not.
+///
+/// ```
+/// use vpl_gi::{Partition, Threshold};
+/// let radius_of_the_scene = 3.0;
+/// let partition = Partition::hard(Threshold::normalised(9.0).resolve(radius_of_the_scene))?;
+/// assert_eq!(partition.threshold(), 1.0);
+/// # Ok::<(), mis_heuristics::PartitionError>(())
+/// ```
+///
+/// It has to be resolved with the radius of a scene first:
+///
+/// ```compile_fail,E0308
+/// use vpl_gi::{Partition, Threshold};
+/// let partition = Partition::hard(Threshold::normalised(9.0))?;
+/// # Ok::<(), mis_heuristics::PartitionError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Threshold {
     /// In 1/length^2, in the scene's unit of length.

@@ -74,6 +74,26 @@ pub struct Estimate<T> {
 /// assert!((radiance.value - 100.0 * albedo_over_pi).abs() < 0.1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Photons move into the map, which takes no more of them: none can be stored that its index does not know.
+///
+/// ```compile_fail,E0382
+/// use photon_map::{Photon, PhotonMap, Photons};
+/// let mut photons = Photons::new();
+/// photons.add_paths(1);
+/// let map = PhotonMap::build(photons, 1.0)?;
+/// photons.store(Photon::new([0.0; 3], [0.0, 0.0, 1.0], 1.0_f32));
+/// # Ok::<(), photon_map::MapError>(())
+/// ```
+///
+/// And a map of importons, whose flux is one number, is none of light:
+///
+/// ```compile_fail,E0308
+/// use photon_map::{DensityEstimation, GatherPoint, PhotonMap, Scratch};
+/// fn irradiance(map: &PhotonMap<f32>, how: &DensityEstimation, at: &GatherPoint) -> [f32; 3] {
+///     map.irradiance(how, at, &mut Scratch::default()).value
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct PhotonMap<F, I = HashGrid> {
     photons: Vec<PackedPhoton<F>>,

@@ -26,7 +26,26 @@ pub use z_sobol::{ZSobol, ZSobolSampler};
 
 /// What one path consumes. All numbers lie in `[0, 1)`, never 1.
 ///
-/// Small and passed by value; cloning it replays the numbers.
+/// Small and passed by value; cloning it replays the numbers. No sampler is `Copy`, so that two uses of the same numbers
+/// have to be asked for; independent ones come from [`fork`](Sampler::fork):
+///
+/// ```
+/// use qmc_sampling::{OwenSobol, Sampler, SamplerFamily};
+/// fn light(mut numbers: impl Sampler) -> [f32; 2] { numbers.next_2d() }
+/// fn bsdf(mut numbers: impl Sampler) -> [f32; 2] { numbers.next_2d() }
+///
+/// let numbers = OwenSobol::new(7).sampler(0, 0);
+/// assert_ne!(light(numbers.fork(0)), bsdf(numbers.fork(1)));
+/// ```
+///
+/// ```compile_fail,E0382
+/// use qmc_sampling::{OwenSobol, Sampler, SamplerFamily};
+/// fn light(mut numbers: impl Sampler) -> [f32; 2] { numbers.next_2d() }
+/// fn bsdf(mut numbers: impl Sampler) -> [f32; 2] { numbers.next_2d() }
+///
+/// let numbers = OwenSobol::new(7).sampler(0, 0);
+/// assert_ne!(light(numbers), bsdf(numbers));
+/// ```
 ///
 /// # Laws
 /// - Two samplers made alike hand out the same numbers.

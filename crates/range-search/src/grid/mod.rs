@@ -125,6 +125,18 @@ impl HashGrid {
     /// grid.for_each_within([0.0; 3], 1.0, |slot, d2| assert_eq!(range_search::distance_squared(sorted[slot], [0.0; 3]), d2));
     /// # Ok::<(), range_search::BuildError>(())
     /// ```
+    ///
+    /// The grid of the old numbers is gone, so that these cannot be taken for slots:
+    ///
+    /// ```compile_fail,E0382
+    /// use range_search::{HashGrid, RangeIndex};
+    /// let points = [[2.0_f32, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
+    /// let grid = HashGrid::build(&points, |p| *p, 1.0)?;
+    /// let sorted = grid.reorder(&points);
+    /// let renumbered = grid.renumbered();
+    /// grid.for_each_within([0.0; 3], 1.0, |slot, d2| assert_eq!(range_search::distance_squared(sorted[slot], [0.0; 3]), d2));
+    /// # Ok::<(), range_search::BuildError>(())
+    /// ```
     #[must_use]
     pub fn renumbered(mut self) -> Self {
         self.points.number();

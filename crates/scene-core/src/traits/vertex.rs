@@ -58,6 +58,25 @@ pub struct ScatterSample<S> {
 /// says (no energy is lost at the silhouettes of smooth meshes), and [`spawn_ray`](Self::spawn_ray) leaves on the side of
 /// the surface that it really points to. Both modes do so, hence the adjoint law holds there too.
 ///
+/// # Transport
+/// What is transported is always said: a light path that scatters as a camera path does is wrong by `eta^2` in glass, and
+/// looks right. A default would be that mistake.
+///
+/// ```
+/// use scene_core::{Spectrum, TransportMode, Vertex, glam::Vec3A};
+/// fn on_a_light_path<V: Vertex>(vertex: &V, wi: Vec3A) -> V::Spectrum {
+///     vertex.eval(wi, TransportMode::Importance)
+/// }
+/// ```
+///
+/// ```compile_fail,E0061
+/// use scene_core::{Spectrum, TransportMode, Vertex, glam::Vec3A};
+/// fn on_a_light_path<V: Vertex>(vertex: &V, wi: Vec3A) -> V::Spectrum {
+///     vertex.eval(wi)
+/// }
+/// ```
+///
+/// # Connections
 /// Two eval's and no further cosine make the connection of two vertices: `a.eval(a->b) * b.eval(b->a) / distance^2`.
 pub trait Vertex: Clone {
     /// What light is measured in.
