@@ -27,6 +27,8 @@ pub struct Context {
     pub threads: usize,
     /// Folder for everything that is written.
     pub out: PathBuf,
+    /// Whether a report that is there already, of the same experiment, form and seed, is taken for this one.
+    pub keep: bool,
 }
 
 impl Context {
@@ -68,6 +70,14 @@ impl Context {
         Ok(check_writable(&self.report_file())?)
     }
 
+    /// The report that is in the folder already, if it is one of the same experiment, form and seed.
+    pub(super) fn kept_report(&self) -> Option<Report> {
+        let text = std::fs::read(self.report_file()).ok()?;
+        let report: Report = serde_json::from_slice(&text).ok()?;
+        let is_same = report.experiment == self.experiment && report.quick == self.quick && report.seed == self.seed;
+        is_same.then_some(report)
+    }
+
     pub(super) fn write_report(&self, report: &Report) -> Result<(), OutputError> {
         write_json(&self.report_file(), report)
     }
@@ -79,7 +89,8 @@ mod tests {
 
     #[test]
     fn seeds_differ_and_repeat() {
-        let context = |seed| Context { experiment: "e", quick: true, seed, threads: 1, out: PathBuf::new() };
+        let context =
+            |seed| Context { experiment: "e", quick: true, seed, threads: 1, out: PathBuf::new(), keep: false };
         let mut seeds: Vec<u64> = Vec::new();
         for seed in [0, 1] {
             for what in ["", "a", "b", "ab", "ba"] {

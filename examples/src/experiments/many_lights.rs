@@ -4,7 +4,8 @@ use qmc_sampling::Replications;
 use scene_core::film::LayeredImage;
 use serde_json::Value;
 
-use super::{Claim, Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
+use super::claims::{at_least, at_most, reported};
+use super::{Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
 use crate::choices::LightSelection;
 use crate::light_photons::LightPhotonSettings;
 use crate::program::{EstimatorName, Failure, RenderSettings};
@@ -196,15 +197,13 @@ fn in_equal_time(
 
 fn claim_errors(all: &[Measured], report: &mut Report) {
     let gain = |over: usize, of: usize| ratio_of_means(&all[over].cost, &all[of].cost);
-    let at_least_5 = gain(UNIFORM, PHOTONS);
-    let id = "gain-over-uniform-selection-in-equal-time".to_owned();
-    report.claims.push(Claim { holds: at_least_5.value >= 5.0, ..claim(id, ">= 5", at_least_5) });
-    report.claims.push(claim("gain-over-selection-by-power-in-equal-time".to_owned(), "-", gain(1, PHOTONS)));
-    report.claims.push(claim("gain-over-resampling-in-equal-time".to_owned(), "-", gain(RIS, PHOTONS)));
-    report.claims.push(claim("gain-of-the-biased-variant-in-equal-time".to_owned(), "-", gain(PHOTONS, BIASED)));
+    report.claims.push(at_least("gain-over-uniform-selection-in-equal-time", gain(UNIFORM, PHOTONS), 5.0));
+    report.claims.push(reported("gain-over-selection-by-power-in-equal-time", gain(1, PHOTONS)));
+    report.claims.push(reported("gain-over-resampling-in-equal-time", gain(RIS, PHOTONS)));
+    report.claims.push(reported("gain-of-the-biased-variant-in-equal-time", gain(PHOTONS, BIASED)));
     let brightness = &all[BIASED].brightness;
     let ratio = Ratio { value: brightness.mean(), ci95: brightness.confidence_interval(0.95) };
-    report.claims.push(claim("brightness-of-the-biased-variant".to_owned(), "-", ratio));
+    report.claims.push(reported("brightness-of-the-biased-variant", ratio));
 }
 
 fn claim_times(by_lights: &[[Measured; 2]], report: &mut Report) {
@@ -214,19 +213,14 @@ fn claim_times(by_lights: &[[Measured; 2]], report: &mut Report) {
         let time = ratio_of_means(of(scene, 1), of(0, 1));
         let id = format!("time-per-pixel-at-{lights}-over-100-lamps");
         report.claims.push(match limit {
-            Some(limit) => Claim { holds: time.value <= limit, ..claim(id, "<= 2", time) },
-            None => claim(id, "-", time),
+            Some(limit) => at_most(id, time, limit),
+            None => reported(id, time),
         });
         // What the scene itself costs.
         let id = format!("time-per-pixel-at-{lights}-over-100-lamps-with-uniform-selection");
-        report.claims.push(claim(id, "-", ratio_of_means(of(scene, 0), of(0, 0))));
+        report.claims.push(reported(id, ratio_of_means(of(scene, 0), of(0, 0))));
         let [uniform, photons] = &by_lights[scene];
         let gain = ratio_of_means(uniform.trials.relative_mse(), photons.trials.relative_mse());
-        report.claims.push(claim(format!("gain-at-{lights}-lamps-with-equal-samples"), "-", gain));
+        report.claims.push(reported(format!("gain-at-{lights}-lamps-with-equal-samples"), gain));
     }
-}
-
-/// A claim that holds: those without a limit are reported as they are.
-fn claim(id: String, paper: &str, ratio: Ratio) -> Claim {
-    Claim { id, paper: paper.to_owned(), measured: ratio.value, ci95: ratio.ci95, holds: true }
 }

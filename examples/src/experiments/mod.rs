@@ -136,14 +136,21 @@ impl Experiment {
         EXPERIMENTS.iter().copied().find(|experiment| experiment.name == name)
     }
 
-    /// Runs it, and writes `report.json` and the page `report.html` into the context's folder.
+    /// Runs it, and writes `report.json` and the page `report.html` into the context's folder, or reads what is there if that is to
+    /// be kept.
     ///
     /// # Errors
     /// What the experiment fails of, or a file that cannot be written.
     pub fn run(&self, context: &Context) -> Result<Report, Failure> {
         context.prepare_folder()?;
-        let report = (self.measure)(context)?;
-        context.write_report(&report)?;
+        let report = match context.kept_report().filter(|_| context.keep) {
+            Some(kept) => kept,
+            None => {
+                let report = (self.measure)(context)?;
+                context.write_report(&report)?;
+                report
+            }
+        };
         let mut overview = Overview::new();
         overview.push(self.about, report.clone(), &context.out);
         overview.write(&context.out)?;
@@ -154,6 +161,31 @@ impl Experiment {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn reports_are_kept_if_they_are_of_the_same_form_and_seed() {
+        let measure = |context: &Context| Ok(Report { rows: vec![Row::default()], ..context.report() });
+        let experiment = Experiment { name: "e", about: "nothing", measure };
+        let folder = tempfile::tempdir().unwrap();
+        let context =
+            Context { experiment: "e", quick: true, seed: 3, threads: 1, out: folder.path().to_path_buf(), keep: true };
+        let rows = |context: &Context| experiment.run(context).unwrap().rows.len();
+        assert_eq!(rows(&context), 1, "there was none");
+        let other = Report { experiment: "e".into(), seed: 3, quick: true, ..Report::default() };
+        context.write_report(&other).unwrap();
+        assert_eq!(rows(&context), 0, "the one of the folder");
+        assert_eq!(rows(&Context { keep: false, ..context.clone() }), 1);
+        for changed in [
+            Report { quick: false, ..other.clone() },
+            Report { seed: 4, ..other.clone() },
+            Report { experiment: "f".into(), ..other },
+        ] {
+            context.write_report(&changed).unwrap();
+            assert_eq!(rows(&context), 1, "{changed:?} is another one");
+        }
+        std::fs::write(folder.path().join("report.json"), "{").unwrap();
+        assert_eq!(rows(&context), 1, "half of a file is none");
+    }
 
     #[test]
     fn experiments_are_found_by_their_names() {

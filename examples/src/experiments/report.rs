@@ -55,12 +55,24 @@ pub struct Claim {
     pub ci95: [f64; 2],
     /// Whether the claim holds.
     pub holds: bool,
+    /// Why it does not, where that is known.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
 }
 
 impl Claim {
     /// Whether anything is claimed at all: other numbers are only measured.
     pub fn is_claimed(&self) -> bool {
         self.paper != "-"
+    }
+
+    /// With the reason why it does not hold, if it does not.
+    #[must_use]
+    pub fn because(mut self, reason: &str) -> Self {
+        if !self.holds {
+            reason.clone_into(&mut self.note);
+        }
+        self
     }
 }
 
@@ -118,6 +130,9 @@ impl fmt::Display for Report {
                 "{:<width$} {:>paper$} {:>9.4} {interval:>19}  {verdict}",
                 claim.id, claim.paper, claim.measured
             )?;
+            if !claim.note.is_empty() {
+                writeln!(f, "{:<width$} {}", "", claim.note)?;
+            }
         }
         Ok(())
     }
@@ -127,11 +142,28 @@ impl fmt::Display for Report {
 mod tests {
     use super::*;
 
+    #[test]
+    fn reasons_are_written_and_read() {
+        let claim = Claim { holds: false, ..Claim::default() }.because("shadow rays are cheap");
+        let json = serde_json::to_value(&claim).unwrap();
+        assert_eq!(json["note"], "shadow rays are cheap");
+        assert_eq!(serde_json::from_value::<Claim>(json).unwrap(), claim);
+        let report = Report { claims: vec![claim], ..Report::default() };
+        assert!(report.to_string().contains("shadow rays are cheap"));
+    }
+
     /// The format that other programs read.
     #[test]
     fn the_keys_are_the_documented_ones() {
         let row = Row::new("cornell-box", "path", [("spp", 64.into()), ("sampler", "sobol".into())]);
-        let claim = Claim { id: "c".into(), paper: "0.70".into(), measured: 0.5, ci95: [0.25, 0.75], holds: true };
+        let claim = Claim {
+            id: "c".into(),
+            paper: "0.70".into(),
+            measured: 0.5,
+            ci95: [0.25, 0.75],
+            holds: true,
+            ..Claim::default()
+        };
         let report = Report { experiment: "e".into(), rows: vec![row], claims: vec![claim], ..Report::default() };
         let json = serde_json::to_value(&report).unwrap();
         let expected = serde_json::json!({

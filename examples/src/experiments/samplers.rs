@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use super::{Claim, Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
+use super::claims::above;
+use super::{Context, Report, Row, Setup, Trials, ratio_of_means};
 use crate::program::{Failure, RenderSettings};
 use crate::samplers::SamplerName;
 
@@ -66,14 +67,9 @@ pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
             report.rows.push(trials.fill(Row::new(setup.scene.name(), "path", params)));
             if sampler != BASELINE {
                 let gain = ratio_of_means(all[baseline].relative_mse(), trials.relative_mse());
-                report.claims.push(claim(format!("gain-of-{}-at-equal-{stage}", sampler.name()), gain));
+                report.claims.push(above(format!("gain-of-{}-at-equal-{stage}", sampler.name()), gain, 1.0));
             }
         }
     }
     Ok(report)
-}
-
-/// That a sampler is better than independent numbers: the interval lies above one.
-fn claim(id: String, gain: Ratio) -> Claim {
-    Claim { id, paper: "> 1".to_owned(), measured: gain.value, ci95: gain.ci95, holds: gain.ci95[0] > 1.0 }
 }

@@ -5,8 +5,8 @@ use scene_core::film::LayeredImage;
 use serde_json::Value;
 use vpl_gi::Threshold;
 
-use super::claims::at_most;
-use super::{Claim, Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
+use super::claims::{at_least, at_most};
+use super::{Context, Ratio, Report, Row, Setup, Trials, ratio_of_means};
 use crate::choices::AnyHeuristic;
 use crate::light_paths::LightPathSettings;
 use crate::program::{EstimatorName, Failure, RenderSettings};
@@ -210,13 +210,7 @@ fn report_scene(setup: &Setup, interleaved: bool, candidates: &[Candidate], repo
         let path = candidates.iter().find(|c| c.estimator == "path");
         if let (Some(path), "office") = (path, scene) {
             let gain = ratio_of_means(cost(path), cost(strata));
-            report.claims.push(Claim {
-                id: format!("{scene}-gain-over-path-in-{name}"),
-                paper: ">= 4".to_owned(),
-                measured: gain.value,
-                ci95: gain.ci95,
-                holds: gain.value >= 4.0,
-            });
+            report.claims.push(at_least(format!("{scene}-gain-over-path-in-{name}"), gain, 4.0));
         }
     }
 }

@@ -292,6 +292,10 @@ pub struct ExperimentArguments {
     /// Number of threads; 0 is one per core.
     #[arg(long, default_value_t = 0, value_parser = parse_threads)]
     pub threads: usize,
+    /// Take what is in the folder already, if it is of the same form and seed, in place of running an experiment again: `all` goes on
+    /// where it was interrupted.
+    #[arg(long)]
+    pub keep: bool,
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -30,8 +30,9 @@ pub(super) fn run(arguments: &ExperimentArguments) -> Result<(), Failure> {
 }
 
 fn run_one(experiment: &Experiment, arguments: &ExperimentArguments, out: PathBuf) -> Result<Report, Failure> {
-    let (quick, seed, threads) = (arguments.quick, arguments.seed, arguments.threads);
-    let report = experiment.run(&Context { experiment: experiment.name, quick, seed, threads, out: out.clone() })?;
+    let ExperimentArguments { quick, seed, threads, keep, .. } = *arguments;
+    let context = Context { experiment: experiment.name, quick, seed, threads, out: out.clone(), keep };
+    let report = experiment.run(&context)?;
     print(&format!("{report}\nwritten to {}\n", out.join("report.json").display()))?;
     Ok(report)
 }

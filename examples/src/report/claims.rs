@@ -35,7 +35,10 @@ fn row(claim: &Claim, all_hold: bool) -> Markup {
             td {
                 @if !claim.is_claimed() { "measured" } @else if claim.holds { span.holds { "✓ holds" } } @else { span.broken { "✗ does not hold" } }
             }
-            @if !all_hold { td.note { (why_not(claim)) } }
+            @if !all_hold { td.note {
+                (why_not(claim))
+                @if !claim.note.is_empty() { br; (claim.note) }
+            } }
         }
     }
 }
@@ -43,7 +46,7 @@ fn row(claim: &Claim, all_hold: bool) -> Markup {
 /// How far a claim is from what was measured, where it does not hold.
 ///
 /// A bound (`>= 2`, `< 1`) or a number within the interval could still be true: the experiment was too short to tell.
-fn why_not(claim: &Claim) -> String {
+pub(super) fn why_not(claim: &Claim) -> String {
     let [low, high] = claim.ci95;
     if claim.holds {
         return String::new();
@@ -108,7 +111,7 @@ mod tests {
     use super::*;
 
     fn claim(paper: &str, measured: f64, ci95: [f64; 2], holds: bool) -> Claim {
-        Claim { id: "<c>".into(), paper: paper.into(), measured, ci95, holds }
+        Claim { id: "<c>".into(), paper: paper.into(), measured, ci95, holds, ..Claim::default() }
     }
 
     #[test]
@@ -132,6 +135,9 @@ mod tests {
         let text = claims(&[claim("> 1", 2.0, [1.5, 2.5], true), claim("> 1", 0.5, [0.4, 0.6], false)]).into_string();
         assert!(text.contains("✓ holds") && text.contains("✗ does not hold") && text.contains("&lt;c&gt;"), "{text}");
         assert!(claims(&[]).into_string().is_empty());
+        let known = claim("> 1", 0.5, [0.4, 0.6], false).because("rays & time");
+        let text = claims(&[known]).into_string();
+        assert!(text.contains("below 1<br>rays &amp; time"), "{text}");
         let text = claims(&[claim("-", 2.0, [1.5, 2.5], true)]).into_string();
         assert!(text.contains("measured</td>") && !text.contains("holds"), "nothing is claimed: {text}");
     }

@@ -10,6 +10,7 @@
 
 mod axis;
 mod claims;
+mod markdown;
 mod number;
 mod overview;
 mod page;

@@ -36,6 +36,20 @@ pub(super) fn with_interval(estimate: &Estimate) -> Markup {
     }
 }
 
+/// The same as plain text.
+pub(super) fn text_with_interval(estimate: &Estimate) -> String {
+    let [low, high] = estimate.ci95;
+    let scale = Scale::of(estimate.value);
+    let text = |value: f64| match scale.power {
+        Some(power) if value.is_finite() => format!("{}e{power}", scale.digits(value)),
+        _ => scale.digits(value),
+    };
+    if low == high || !(low.is_finite() && high.is_finite()) {
+        return text(estimate.value);
+    }
+    format!("{} ({} – {})", text(estimate.value), text(low), text(high))
+}
+
 /// A name of an estimator, which may be broken before its options: it has no spaces.
 pub(super) fn breakable(name: &str) -> Markup {
     let mut parts = name.split(':');
@@ -123,6 +137,10 @@ mod tests {
         }
         let text = with_interval(&Estimate { value: 2e-4, ci95: [9e-5, 3.14e-4] }).into_string();
         assert!(text.contains("(0.90 – 3.14)·10<sup>−4</sup>"), "{text}");
+        assert_eq!(text_with_interval(&Estimate { value: 2e-4, ci95: [9e-5, 3.14e-4] }), "2.00e-4 (0.90e-4 – 3.14e-4)");
+        assert_eq!(text_with_interval(&Estimate { value: 2.0, ci95: [1.5, 2.5] }), "2.00 (1.50 – 2.50)");
+        assert_eq!(text_with_interval(&Estimate { value: 2.0, ci95: [2.0; 2] }), "2.00");
+        assert_eq!(text_with_interval(&Estimate { value: f64::NAN, ci95: [f64::NAN; 2] }), "–");
         let count = with_interval(&Estimate::of_mean(&[16.0, 16.0])).into_string();
         assert_eq!(count, "<span class=\"value\">16</span>");
         assert!(with_interval(&Estimate::of_mean(&[1.0])).into_string().contains("unknown"));

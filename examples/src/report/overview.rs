@@ -6,6 +6,7 @@ use maud::{Markup, html};
 
 use super::Page;
 use super::claims::{claims, rows};
+use super::markdown::markdown;
 use super::thumbnails::{Thumbnail, pictures_in};
 use crate::experiments::Report;
 use crate::output::{OutputError, write_atomically};
@@ -54,13 +55,15 @@ impl Overview {
         self.sections.push(Section { about: about.to_owned(), report, pictures, left_out });
     }
 
-    /// Writes the page as `report.html` into a folder that exists.
+    /// Writes the page as `report.html`, and all claims as the table `claims.md`, into a folder that exists.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// If a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), OutputError> {
         let page = self.page().html();
-        write_atomically(&folder.join("report.html"), |file| file.write_all(page.as_bytes()))
+        write_atomically(&folder.join("report.html"), |file| file.write_all(page.as_bytes()))?;
+        let tables = markdown(self.sections.iter().map(|section| (&*section.about, &section.report)));
+        write_atomically(&folder.join("claims.md"), |file| file.write_all(tables.as_bytes()))
     }
 
     /// The page.
@@ -142,7 +145,8 @@ mod tests {
     use crate::experiments::{Claim, Row};
 
     fn report(experiment: &str, holds: bool) -> Report {
-        let claim = Claim { id: "c".into(), paper: "> 1".into(), measured: 2.0, ci95: [1.5, 2.5], holds };
+        let claim =
+            Claim { id: "c".into(), paper: "> 1".into(), measured: 2.0, ci95: [1.5, 2.5], holds, ..Claim::default() };
         let rows = vec![Row { rel_mse: 0.5, ..Row::new("<scene>", "path", [("spp", 64.into())]) }];
         Report { experiment: experiment.into(), claims: vec![claim], rows, ..Report::default() }
     }

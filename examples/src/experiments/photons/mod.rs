@@ -18,7 +18,7 @@ use qmc_sampling::OwenSobol;
 use scene_core::{PowerChoice, RayCounts, ReferenceScene, RussianRoulette, Scene};
 
 use super::Setup;
-use super::claims::{at_least, at_most, reported};
+use super::claims::{about_one, at_least, at_most, reported};
 use crate::estimators::{PathGuidance, PhotonTracing, Storing};
 use crate::photons::{PathLimits, PhotonError, PhotonSettings};
 use crate::program::Failure;

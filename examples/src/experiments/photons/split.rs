@@ -7,7 +7,7 @@ use qmc_sampling::{Independent, Replications, Sampler, SamplerFamily};
 use scene_core::{Emitter, ReferenceScene, Scene, Vertex};
 use serde_json::Value;
 
-use super::{Traced, Tracer, at_least, at_most, reported};
+use super::{Traced, Tracer, about_one, at_least, at_most, reported};
 use crate::estimators::Storing;
 use crate::experiments::{Context, Ratio, Report, Row, Setup, ratio_of_means};
 use crate::photons::{PartitionVariant, PhotonSettings};
@@ -68,20 +68,13 @@ fn ratios(context: &Context, setup: &Setup, report: &mut Report) -> Result<(), F
         for (name, ratio, sizes) in &all[1..] {
             let id = |what: &str| format!("{}-{variant:?}-q-{name}-{what}", setup.scene.name()).to_lowercase();
             let global = ratio_of_means(&sizes.global, &first.global);
-            report.claims.push(within(&id("global-size"), global, 0.1));
+            report.claims.push(about_one(id("global-size"), global, 0.1));
             let gain = ratio_of_means(&sizes.caustic, &first.caustic);
             let gain = Ratio { value: gain.value * ratio, ci95: gain.ci95.map(|x| x * ratio) };
-            report.claims.push(within(&id("caustic-size-times-q"), gain, 0.1));
+            report.claims.push(about_one(id("caustic-size-times-q"), gain, 0.1));
         }
     }
     Ok(())
-}
-
-/// A claim that a ratio is one, up to an error.
-fn within(id: &str, ratio: Ratio, error: f64) -> crate::experiments::Claim {
-    let holds = (ratio.value - 1.0).abs() <= error;
-    let paper = format!("1 +- {error}");
-    crate::experiments::Claim { id: id.to_owned(), paper, measured: ratio.value, ci95: ratio.ci95, holds }
 }
 
 fn storing_all<D: Deposition>(partition: MapPartition, deposition: D) -> Storing<D> {

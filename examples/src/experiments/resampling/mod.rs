@@ -20,7 +20,7 @@ use ris::{Budget, RatioMap, Source, Target, VarianceModel};
 use scene_core::texture::{ColorSpace, Image};
 use scene_core::{Scene, Sensor, Spectrum, Vertex, builtin};
 
-use super::claims::{at_least, at_most, reported};
+use super::claims::{at_least, at_most, equals, reported};
 use super::setup::asset_file;
 use super::{Context, Ratio, Setup};
 use crate::choices::{AnyChoice, LightSelection};

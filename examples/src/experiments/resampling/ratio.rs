@@ -7,7 +7,7 @@ use ris::{Budget, CostModel, Objective};
 use scene_core::film::LayeredImage;
 use serde_json::Value;
 
-use super::{at_centres, at_least, direct_light, models, papers_proposals, predicted, reported, with_budget};
+use super::{at_centres, at_least, direct_light, equals, models, papers_proposals, predicted, reported, with_budget};
 use crate::estimators::{EnvironmentSampling, ResampledDirect, measure_cost};
 use crate::experiments::{Claim, Context, Ratio, Report, Row, Setup};
 use crate::program::Failure;
@@ -74,15 +74,8 @@ fn agreement(budget: Budget, measured: &[f64], predicted: &[f64], width: usize) 
         let sum = |values: &[f64]| values.chunks(width).skip(set).step_by(SETS).flatten().sum::<f64>();
         ratios.push(sum(measured) / sum(predicted));
     }
-    let ci95 = ratios.confidence_interval(0.95);
-    Claim {
-        id: format!("figure-3-m{}-measured-over-predicted-variance", budget.candidates),
-        paper: "1".to_owned(),
-        measured: ratios.mean(),
-        ci95,
-        // One is outside of one interval in twenty.
-        holds: ci95[0] <= 1.05 && ci95[1] >= 0.95,
-    }
+    let ratio = Ratio { value: ratios.mean(), ci95: ratios.confidence_interval(0.95) };
+    equals(format!("figure-3-m{}-measured-over-predicted-variance", budget.candidates), ratio, 1.0, 0.05)
 }
 
 /// Among the pixels where one of the two settings is clearly better: does the map say which? The two have the same variance where

@@ -4,7 +4,8 @@ use scene_core::film::LayeredImage;
 use scene_core::glam::Vec3A;
 use vpl_gi::{Partition, geometry_term};
 
-use crate::experiments::{Claim, Context, Report, Row};
+use crate::experiments::claims::at_most;
+use crate::experiments::{Context, Ratio, Report, Row};
 use crate::light_paths::PartitionName;
 use crate::program::Failure;
 
@@ -61,13 +62,8 @@ pub(super) fn measure(context: &Context, report: &mut Report) -> Result<(), Fail
         // The weak singularity is gone: whatever the form, no light contributes more than the threshold, except that a
         // distance alone says nothing about the cosines, which only make it less.
         let largest = f64::from(variant.largest);
-        report.claims.push(Claim {
-            id: format!("figure-2-{label}-is-bounded"),
-            paper: format!("<= {THRESHOLD}"),
-            measured: largest,
-            ci95: [largest; 2],
-            holds: variant.largest <= THRESHOLD,
-        });
+        let largest = Ratio { value: largest, ci95: [largest; 2] };
+        report.claims.push(at_most(format!("figure-2-{label}-is-bounded"), largest, f64::from(THRESHOLD)));
     }
     Ok(())
 }
