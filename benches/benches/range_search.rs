@@ -3,13 +3,11 @@
 //! On one thread, but where the name says two.
 
 use std::hint::black_box;
-use std::num::NonZero;
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use lichtwerk_benches::surface_points;
+use lichtwerk_benches::{kiddo_nearest, kiddo_tree, kiddo_within, surface_points};
 use range_search::{Bvh, HashGrid, KdTree, RangeIndex, divide_and_conquer};
 
 /// Points.
@@ -35,7 +33,7 @@ fn build(criterion: &mut Criterion) {
     let points = &points;
     let pool = two_threads();
     let mut group = group(criterion, "range search, build", POINTS);
-    group.bench_function("kiddo", |b| b.iter(|| ImmutableKdTree::<f32, 3>::new_from_slice(points).expect("a tree")));
+    group.bench_function("kiddo", |b| b.iter(|| kiddo_tree(points)));
     group.bench_function("grid", |b| b.iter(|| HashGrid::build(points, |p| *p, radius)));
     group.bench_function("grid, two threads", |b| {
         b.iter(|| pool.install(|| HashGrid::par_build(points, |p| *p, radius)));
@@ -57,21 +55,10 @@ fn sum_within(index: &impl RangeIndex, queries: &[[f32; 3]], radius: f32) -> f32
     sum
 }
 
-fn kiddo_within(tree: &ImmutableKdTree<f32, 3>, queries: &[[f32; 3]], radius: f32) -> f32 {
-    let mut sum = 0.0;
-    for query in queries {
-        for found in tree.query(query).within::<SquaredEuclidean<f32>>(radius * radius).unsorted().execute() {
-            black_box(found.item);
-            sum += found.distance;
-        }
-    }
-    sum
-}
-
 fn queries(criterion: &mut Criterion) {
     let (points, radius) = surface_points(POINTS);
     let grid = HashGrid::build(&points, |p| *p, radius).expect("a grid");
-    let kiddo = ImmutableKdTree::<f32, 3>::new_from_slice(&points).expect("a tree");
+    let kiddo = kiddo_tree(&points);
     let tree = KdTree::build(&points, |p| *p).expect("a tree");
     let bvh = Bvh::build(&points, |p| *p).expect("a hierarchy");
     // In random order, and one after the other along the surface.
@@ -90,15 +77,7 @@ fn queries(criterion: &mut Criterion) {
     }
 
     let mut group = group(criterion, "range search, 50 nearest, random order", QUERIES);
-    let count = NonZero::new(NEAREST).expect("not zero");
-    group.bench_function("kiddo", |b| {
-        b.iter(|| {
-            let farthest = |query: &[f32; 3]| {
-                kiddo.query(query).nearest_n::<SquaredEuclidean<f32>>(count).execute().last().map(|last| last.distance)
-            };
-            random.iter().filter_map(farthest).sum::<f32>()
-        });
-    });
+    group.bench_function("kiddo", |b| b.iter(|| kiddo_nearest(&kiddo, &random, NEAREST)));
     fn nearest(index: &impl RangeIndex, queries: &[[f32; 3]]) -> f32 {
         let mut found = Vec::new();
         let farthest = |query: &[f32; 3]| {
@@ -116,7 +95,7 @@ fn queries(criterion: &mut Criterion) {
 fn all_points(criterion: &mut Criterion) {
     let (points, radius) = surface_points(POINTS);
     let grid = HashGrid::build(&points, |p| *p, radius).expect("a grid");
-    let kiddo = ImmutableKdTree::<f32, 3>::new_from_slice(&points).expect("a tree");
+    let kiddo = kiddo_tree(&points);
     let ordered: Vec<[f32; 3]> = grid.order().map(|id| points[id]).collect();
     let mut group = group(criterion, "range search, all points around all points", POINTS);
     group.bench_function("kiddo, random order", |b| b.iter(|| kiddo_within(&kiddo, &points, radius)));

@@ -1,4 +1,4 @@
-"""Lichtwerk against Mitsuba 3: the same pictures (`compare`), and how fast (`speed`). Started by run.sh."""
+"""Lichtwerk against Mitsuba 3: the same pictures (`compare`), and how fast (`speed`); all peers in one table (`table`). Started by run.sh."""
 
 import argparse
 import sys
@@ -7,6 +7,7 @@ from pathlib import Path
 import compare
 import llvm
 import speed
+import table
 from renderers import RendererError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -14,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def parse():
     parser = argparse.ArgumentParser(prog="benches/peers/run.sh", description=__doc__)
-    parser.add_argument("mode", choices=["compare", "speed", "selftest", "all"])
+    parser.add_argument("mode", choices=["compare", "speed", "selftest", "table", "all"])
     parser.add_argument("scenes", nargs="*", help="scene names; all of scenes.py for compare, cornell-box and modern-hall for speed")
     parser.add_argument("--assets", type=Path, default=ROOT.parent / "shared" / "assets")
     parser.add_argument("--lichtwerk", type=Path, default=ROOT / "target" / "release" / "lichtwerk", help="the program")
@@ -36,9 +37,10 @@ def parse():
     race.add_argument("--repetitions", type=int, default=5)
     race.add_argument("--rr-depth", type=int, default=5, help="Mitsuba's depth from which Russian roulette may end a path")
     race.add_argument("--wanted", type=float, default=2.5, help="ratio over scalar_rgb below which the exit status is 1")
+    race.add_argument("--denoiser", action="store_true", help="table: Open Image Denoise as well")
     race.add_argument("--without-lichtwerk", action="store_true", help="measure Mitsuba alone")
     options = parser.parse_args()
-    if options.batches < 16 and options.mode != "speed":
+    if options.batches < 16 and options.mode not in ("speed", "table"):
         parser.error("--batches below 16 leaves the t statistic no ground under heavy tails")
     if options.clamp is not None and (options.spp != 1 or options.clamp <= 0):
         parser.error("--clamp takes a positive number and needs --spp 1: only single samples are distributed alike in both renderers")
@@ -51,8 +53,9 @@ def parse():
 def with_defaults(options, mode):
     """A copy of the options with the defaults of `mode` filled in."""
     filled = argparse.Namespace(**vars(options))
-    filled.scale = options.scale or (0.5 if mode == "speed" else 0.125)
-    filled.spp = options.spp or (16 if mode == "speed" else 32)
+    races = mode in ("speed", "table")
+    filled.scale = options.scale or (0.5 if races else 0.125)
+    filled.spp = options.spp or (16 if races else 32)
     filled.variant = options.variant or ("llvm_ad_rgb" if options.llvm else "scalar_rgb")
     return filled
 
@@ -60,8 +63,9 @@ def with_defaults(options, mode):
 def main():
     options = parse()
     options.llvm = llvm.find()
-    modes = ["selftest", "compare", "speed"] if options.mode == "all" else [options.mode]
-    actions = {"compare": compare.run, "selftest": compare.selftest, "speed": speed.run}
+    # The table races Mitsuba, too.
+    modes = ["selftest", "compare", "table"] if options.mode == "all" else [options.mode]
+    actions = {"compare": compare.run, "selftest": compare.selftest, "speed": speed.run, "table": table.run}
     try:
         return max(actions[mode](with_defaults(options, mode)) for mode in modes)
     except RendererError as error:

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Compare lichtwerk with Mitsuba 3, block by block, or race them:
+# Compare lichtwerk with Mitsuba 3, block by block, or race it and other peers:
 #
+#   benches/peers/run.sh table              # all peers side by side: one table with ratios and intervals
 #   benches/peers/run.sh compare            # all scenes; exit status 1 if a block differs
 #   benches/peers/run.sh speed              # paths per second, interleaved runs
 #   benches/peers/run.sh selftest           # Mitsuba against itself, and against itself with planted errors

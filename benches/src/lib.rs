@@ -6,10 +6,12 @@
 
 mod brute_force;
 mod inputs;
+mod kiddo_alone;
 mod surface_points;
 
 pub use brute_force::brute_force;
 pub use inputs::{blob, camera_rays, directions, segments, sized, triangles_of};
+pub use kiddo_alone::{RgbVertex, filter_over_kiddo, kiddo_nearest, kiddo_tree, kiddo_within, vertices};
 pub use surface_points::surface_points;
 
 // The examples in the pages that belong to no crate are compiled and run as this package's doctests.

@@ -1,5 +1,5 @@
 // nanoflann over the points of benches/src/surface_points.rs: what benches/benches/range_search.rs measures, in seconds of the
-// fastest of three runs. Run by run.sh.
+// fastest of three runs; with --json as {"comparison": seconds}, under the names of benches/benches/peers.rs. Run by run.sh.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include <nanoflann.hpp>
@@ -40,6 +41,9 @@ static Points surface_points(size_t count) {
     return points;
 }
 
+static bool json = false;
+static const char* separator = "{";
+
 template <class F> static void measure(const char* name, size_t elements, F&& f) {
     double best = 1e300, check = 0.0;
     for (int run = 0; run < 3; ++run) {
@@ -47,10 +51,17 @@ template <class F> static void measure(const char* name, size_t elements, F&& f)
         check = f();
         best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
+    if (json) {
+        std::printf("%s\"range search, %s\": %.9g", separator, name, best);
+        separator = ", ";
+        return;
+    }
     std::printf("%-28s %8.3f s %10.1f ns each (%g)\n", name, best, 1e9 * best / double(elements), check);
 }
 
 int main(int argc, char** argv) {
+    json = argc > 1 && std::strcmp(argv[1], "--json") == 0;
+    if (json) --argc, ++argv;
     const size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
     const size_t queries = std::min<size_t>(count, 20000), nearest = std::min<size_t>(count, 50);
     const Points points = surface_points(count);
@@ -84,5 +95,6 @@ int main(int argc, char** argv) {
         }
         return sum;
     });
-    measure("all around all, random order", count, [&] { return within(0, count); });
+    measure("all around all", count, [&] { return within(0, count); });
+    if (json) std::printf("}\n");
 }

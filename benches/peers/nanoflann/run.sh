@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What nanoflann takes for the range searches of benches/benches/range_search.rs:
 #
-#   benches/peers/nanoflann/run.sh [points]
+#   benches/peers/nanoflann/run.sh [--json] [points]
 #
 # Needs a C++17 compiler and nanoflann.hpp (Debian: libnanoflann-dev), which is installed with apt-get if it is missing and we may.
 set -euo pipefail
