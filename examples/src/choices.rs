@@ -34,7 +34,7 @@ impl<F: Float> Heuristic<F> for AnyHeuristic {
     /// # Panics
     /// With the stratification heuristic, which knows no densities: see [`is_of_densities`](Self::is_of_densities).
     #[inline]
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         match self {
             Self::Balance => Balance.weight(technique, densities),
             Self::Power => Power::TWO.weight(technique, densities),

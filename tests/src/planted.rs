@@ -103,7 +103,7 @@ impl<V: Vertex> Vertex for OneModeVertex<V> {
 pub struct Unnormalised(pub f32);
 
 impl Heuristic<f32> for Unnormalised {
-    fn weight(&self, technique: usize, densities: &impl Densities<f32>) -> f32 {
+    fn weight(&self, technique: usize, densities: &(impl Densities<f32> + ?Sized)) -> f32 {
         self.0 * Balance.weight(technique, densities)
     }
 }

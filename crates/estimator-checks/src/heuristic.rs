@@ -25,7 +25,7 @@ const GRID: [f64; 9] = [0.0, 1e-38, 1e-20, 1e-3, 1.0, 1.5, 1e3, 1e20, 1e38];
 /// /// Forgets that the sum may overflow or vanish.
 /// struct Naive;
 /// impl Heuristic<f32> for Naive {
-///     fn weight(&self, technique: usize, densities: &impl Densities<f32>) -> f32 {
+///     fn weight(&self, technique: usize, densities: &(impl Densities<f32> + ?Sized)) -> f32 {
 ///         densities.density(technique) / (0..densities.len()).map(|i| densities.density(i)).sum::<f32>()
 ///     }
 /// }
@@ -214,7 +214,7 @@ mod tests {
     const CORRECT: Shares = Shares { total: 1.0, floor: 0.0, ask: 0 };
 
     impl<F: Float> Heuristic<F> for Shares {
-        fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+        fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
             let own = densities.density(technique + self.ask).to_f64();
             let sum: f64 = (0..densities.len()).map(|i| densities.density(i).to_f64()).sum();
             F::from_f64(if sum > 0.0 { self.total * own / sum + self.floor } else { 0.0 })
@@ -245,7 +245,7 @@ mod tests {
     fn planted_bug_overflow() {
         struct Squares;
         impl Heuristic<f32> for Squares {
-            fn weight(&self, technique: usize, densities: &impl Densities<f32>) -> f32 {
+            fn weight(&self, technique: usize, densities: &(impl Densities<f32> + ?Sized)) -> f32 {
                 let square = |i| densities.density(i) * densities.density(i);
                 let sum: f32 = (0..densities.len()).map(square).sum();
                 if sum > 0.0 { square(technique) / sum } else { 0.0 }
@@ -258,7 +258,7 @@ mod tests {
     fn heuristics_that_ask_for_nothing() {
         struct First;
         impl Heuristic<f32> for First {
-            fn weight(&self, technique: usize, _: &impl Densities<f32>) -> f32 {
+            fn weight(&self, technique: usize, _: &(impl Densities<f32> + ?Sized)) -> f32 {
                 f32::from(u8::from(technique == 0))
             }
         }

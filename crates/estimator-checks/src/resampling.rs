@@ -74,7 +74,7 @@ pub fn check_resampling_weights<F: Float>(test: &str, weights: impl Fn(usize, &[
 struct OfSlices<W>(W);
 
 impl<F: Float, W: Fn(usize, &[F]) -> F> Heuristic<F> for OfSlices<W> {
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let all: Vec<F> = (0..densities.len()).map(|i| densities.density(i)).collect();
         (self.0)(technique, &all)
     }

@@ -19,7 +19,7 @@ use crate::{Densities, Float, Heuristic};
 /// **Cost.** Asks for all densities, each once; for one only if the technique's own density is zero. With two
 /// techniques one addition and one division. Sums that overflow are avoided by adding up ratios of densities.
 ///
-/// **Source.** E. Veach and L. Guibas 1995, equation 8; P0, section 3.1 with beta = 1.
+/// **Source.** E. Veach and L. Guibas 1995, equation 8; Kollig and Keller 2004, section 3.1 with beta = 1.
 ///
 /// # Example
 /// ```
@@ -33,7 +33,7 @@ pub struct Balance;
 
 impl<F: Float> Heuristic<F> for Balance {
     #[inline(always)]
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         if densities.len() != 2 {
             return ratio_weight(technique, densities, |ratio| ratio);
         }

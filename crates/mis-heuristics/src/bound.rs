@@ -29,7 +29,7 @@ impl Bounded {
     }
 }
 
-/// P0's equation 5: how much variance a heuristic has at most, compared to the best one.
+/// Kollig and Keller's equation 5: how much variance a heuristic has at most, compared to the best one.
 ///
 /// ```text
 /// sigma^2(eta) <= c sigma^2(eta_opt) + 1/n E(eta)^2
@@ -45,7 +45,7 @@ impl Bounded {
 ///
 /// **Cost.** None to speak of.
 ///
-/// **Source.** P0, equation 5; E. Veach, PhD thesis 1997, theorems 9.2 and 9.3, from which the factors of the cutoff
+/// **Source.** Kollig and Keller 2004, equation 5; E. Veach, PhD thesis 1997, theorems 9.2 and 9.3, from which the factors of the cutoff
 /// and maximum heuristics are.
 ///
 /// # Example

@@ -72,7 +72,7 @@ impl Cutoff {
 }
 
 impl<F: Float> Heuristic<F> for Cutoff {
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let alpha = F::from_f64(self.alpha);
         if alpha == F::ZERO {
             return Balance.weight(technique, densities);

@@ -7,7 +7,8 @@
 /// in the product area measure of a path). [`MultiSample`](crate::MultiSample) and [`OneSample`](crate::OneSample)
 /// multiply by the counts; with one sample per technique there is nothing to multiply.
 ///
-/// Arrays and slices are `Densities`, so are references to them, and [`Lazy`](crate::Lazy) makes a closure one.
+/// Arrays and slices are `Densities`, so are references to them, and [`Lazy`](crate::Lazy) makes a closure one. `dyn Densities<F>` is
+/// one, too.
 ///
 /// # Special values
 /// | density | meaning |

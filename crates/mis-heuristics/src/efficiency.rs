@@ -115,7 +115,7 @@ impl FromIterator<f64> for RunningVariance {
 ///
 /// **Cost.** As two [`RunningVariance`] values.
 ///
-/// **Source.** P0, section 4.1.
+/// **Source.** Kollig and Keller 2004, section 4.1.
 ///
 /// # Example
 /// ```

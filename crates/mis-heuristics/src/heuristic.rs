@@ -4,7 +4,7 @@ use crate::{Densities, Float};
 
 /// A rule that shares the weight of a sample out among the techniques that could have generated it.
 ///
-/// With `n_i` samples from technique `i`, distributed like `p_i`, the estimator of P0's equation 4
+/// With `n_i` samples from technique `i`, distributed like `p_i`, the estimator of Kollig and Keller's equation 4
 /// ```text
 /// integral of f  ~  sum_i 1/n_i sum_j  w_i(x_ij) f(x_ij) / p_i(x_ij)
 /// ```
@@ -24,7 +24,7 @@ use crate::{Densities, Float};
 /// # Source
 /// E. Veach and L. Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995, section 3;
 /// T. Kollig and A. Keller, "On the Efficiency of Multiple Importance Sampling: Robust Instant Global Illumination",
-/// 2004, section 3.1 (called P0 throughout this crate).
+/// 2004, section 3.1.
 ///
 /// # Example
 /// Writing one: every technique that can generate the sample gets the same share.
@@ -33,7 +33,7 @@ use crate::{Densities, Float};
 ///
 /// struct Equal;
 /// impl Heuristic<f64> for Equal {
-///     fn weight(&self, technique: usize, densities: &impl Densities<f64>) -> f64 {
+///     fn weight(&self, technique: usize, densities: &(impl Densities<f64> + ?Sized)) -> f64 {
 ///         if densities.density(technique) <= 0.0 {
 ///             return 0.0;
 ///         }
@@ -47,12 +47,12 @@ pub trait Heuristic<F> {
     ///
     /// # Panics
     /// May panic if `technique >= densities.len()`.
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F;
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F;
 }
 
 impl<F, H: Heuristic<F> + ?Sized> Heuristic<F> for &H {
     #[inline]
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         (**self).weight(technique, densities)
     }
 }
@@ -71,7 +71,7 @@ pub trait HeuristicExt<F: Float>: Heuristic<F> {
     /// assert_eq!(Balance.factor(0, &[0.0, 1.5]), 0.0);
     /// ```
     #[inline]
-    fn factor(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn factor(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let density = densities.density(technique);
         if density > F::ZERO { self.weight(technique, densities) / density } else { F::ZERO }
     }
@@ -83,7 +83,7 @@ pub trait HeuristicExt<F: Float>: Heuristic<F> {
     /// assert_eq!(Power::TWO.weight_sum(&[1.0_f32, 2.0, 2.0]), 1.0);
     /// assert_eq!(Power::TWO.weight_sum(&[0.0_f32, 0.0]), 0.0);
     /// ```
-    fn weight_sum(&self, densities: &impl Densities<F>) -> F {
+    fn weight_sum(&self, densities: &(impl Densities<F> + ?Sized)) -> F {
         (0..densities.len()).fold(F::ZERO, |sum, technique| sum + self.weight(technique, densities))
     }
 }

@@ -17,7 +17,11 @@ pub(crate) fn ratio<F: Float>(other: F, own: F) -> F {
 ///
 /// Asks for every density once, for the own one first, and for no other if that is zero.
 #[inline]
-pub(crate) fn ratio_weight<F: Float>(technique: usize, densities: &impl Densities<F>, power: impl Fn(F) -> F) -> F {
+pub(crate) fn ratio_weight<F: Float>(
+    technique: usize,
+    densities: &(impl Densities<F> + ?Sized),
+    power: impl Fn(F) -> F,
+) -> F {
     let own = densities.density(technique).positive_part();
     if own <= F::ZERO {
         return F::ZERO;

@@ -18,7 +18,7 @@ use crate::{Densities, Float, Heuristic};
 /// **Cost.** Asks for the technique's own density and then for the others until one is larger: all of them, each once,
 /// where the weight is one.
 ///
-/// **Source.** E. Veach and L. Guibas 1995, section 4; P0, section 3.1 with beta = infinity.
+/// **Source.** E. Veach and L. Guibas 1995, section 4; Kollig and Keller 2004, section 3.1 with beta = infinity.
 ///
 /// # Example
 /// ```
@@ -31,7 +31,7 @@ pub struct Maximum;
 
 impl<F: Float> Heuristic<F> for Maximum {
     #[inline]
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let own = densities.density(technique).positive_part();
         if own <= F::ZERO {
             return F::ZERO;

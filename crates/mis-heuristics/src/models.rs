@@ -51,7 +51,7 @@ impl core::error::Error for ModelError {}
 ///
 /// **Cost.** One multiplication per density asked for; techniques without samples are never asked.
 ///
-/// **Source.** E. Veach and L. Guibas 1995, equation 4; P0, equation 4.
+/// **Source.** E. Veach and L. Guibas 1995, equation 4; Kollig and Keller 2004, equation 4.
 ///
 /// # Example
 /// ```
@@ -90,7 +90,7 @@ impl<C: AsRef<[u32]>> MultiSample<C> {
     /// # Panics
     /// If the number of techniques differs from the number of counts.
     #[inline]
-    pub fn densities<'a, F: Float, D: Densities<F>>(&'a self, pdfs: &'a D) -> impl Densities<F> + 'a {
+    pub fn densities<'a, F: Float, D: Densities<F> + ?Sized>(&'a self, pdfs: &'a D) -> impl Densities<F> + 'a {
         assert_eq!(self.counts().len(), pdfs.len(), "one sample count per technique");
         Scaled { len: pdfs.len(), scale: |i: usize| F::from_u32(self.counts()[i]), pdfs }
     }
@@ -101,7 +101,12 @@ impl<C: AsRef<[u32]>> MultiSample<C> {
     /// # Panics
     /// If the number of techniques differs from the number of counts.
     #[inline]
-    pub fn factor<F: Float>(&self, heuristic: &impl Heuristic<F>, technique: usize, pdfs: &impl Densities<F>) -> F {
+    pub fn factor<F: Float>(
+        &self,
+        heuristic: &impl Heuristic<F>,
+        technique: usize,
+        pdfs: &(impl Densities<F> + ?Sized),
+    ) -> F {
         crate::HeuristicExt::factor(heuristic, technique, &self.densities(pdfs))
     }
 }
@@ -189,7 +194,7 @@ impl<F: Float, C: AsRef<[F]>> OneSample<F, C> {
     /// # Panics
     /// If the number of techniques differs from the number of probabilities.
     #[inline]
-    pub fn densities<'a, D: Densities<F>>(&'a self, pdfs: &'a D) -> impl Densities<F> + 'a {
+    pub fn densities<'a, D: Densities<F> + ?Sized>(&'a self, pdfs: &'a D) -> impl Densities<F> + 'a {
         assert_eq!(self.probabilities().len(), pdfs.len(), "one selection probability per technique");
         Scaled { len: pdfs.len(), scale: |i: usize| self.probabilities()[i], pdfs }
     }
@@ -199,19 +204,19 @@ impl<F: Float, C: AsRef<[F]>> OneSample<F, C> {
     /// # Panics
     /// If the number of techniques differs from the number of probabilities.
     #[inline]
-    pub fn factor(&self, heuristic: &impl Heuristic<F>, technique: usize, pdfs: &impl Densities<F>) -> F {
+    pub fn factor(&self, heuristic: &impl Heuristic<F>, technique: usize, pdfs: &(impl Densities<F> + ?Sized)) -> F {
         crate::HeuristicExt::factor(heuristic, technique, &self.densities(pdfs))
     }
 }
 
 /// `scale_i * p_i`; not asked where the scale is zero.
-struct Scaled<'a, S, D> {
+struct Scaled<'a, S, D: ?Sized> {
     len: usize,
     scale: S,
     pdfs: &'a D,
 }
 
-impl<F: Float, S: Fn(usize) -> F, D: Densities<F>> Densities<F> for Scaled<'_, S, D> {
+impl<F: Float, S: Fn(usize) -> F, D: Densities<F> + ?Sized> Densities<F> for Scaled<'_, S, D> {
     #[inline]
     fn len(&self) -> usize {
         self.len

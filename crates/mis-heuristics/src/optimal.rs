@@ -105,7 +105,7 @@ impl<const N: usize> OptimalMoments<N> {
     ///
     /// # Errors
     /// [`OptimalError::Value`], [`OptimalError::DensitySum`] or [`OptimalError::Techniques`]; nothing is added then.
-    pub fn add<F: Float>(&mut self, f: f64, densities: &impl Densities<F>) -> Result<(), OptimalError> {
+    pub fn add<F: Float>(&mut self, f: f64, densities: &(impl Densities<F> + ?Sized)) -> Result<(), OptimalError> {
         let sample = Shares::<N>::of(f, densities)?;
         for i in 0..N {
             for k in 0..N {
@@ -203,7 +203,11 @@ impl<const N: usize> OptimalWeights<N> {
     ///
     /// # Errors
     /// [`OptimalError::Value`], [`OptimalError::DensitySum`] or [`OptimalError::Techniques`].
-    pub fn contribution<F: Float>(&self, f: f64, densities: &impl Densities<F>) -> Result<f64, OptimalError> {
+    pub fn contribution<F: Float>(
+        &self,
+        f: f64,
+        densities: &(impl Densities<F> + ?Sized),
+    ) -> Result<f64, OptimalError> {
         let sample = Shares::<N>::of(f, densities)?;
         Ok(sample.balance - self.control(&sample.shares))
     }
@@ -232,7 +236,7 @@ pub struct OptimalAt<'a, const N: usize> {
 }
 
 impl<F: Float, const N: usize> Heuristic<F> for OptimalAt<'_, N> {
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let Ok(sample) = Shares::<N>::of(self.f, densities) else {
             return crate::Balance.weight(technique, densities);
         };
@@ -257,7 +261,7 @@ struct Shares<const N: usize> {
 }
 
 impl<const N: usize> Shares<N> {
-    fn of<F: Float>(f: f64, densities: &impl Densities<F>) -> Result<Self, OptimalError> {
+    fn of<F: Float>(f: f64, densities: &(impl Densities<F> + ?Sized)) -> Result<Self, OptimalError> {
         if densities.len() != N {
             return Err(OptimalError::Techniques { expected: N, found: densities.len() });
         }

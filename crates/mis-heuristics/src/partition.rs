@@ -46,7 +46,7 @@ impl core::error::Error for PartitionError {}
 ///
 /// **Cost.** One comparison; one division more for the soft partition where `G > b`.
 ///
-/// **Source.** P0, equations 2 and 3; soft: T. Kollig and A. Keller, "Illumination in the Presence of Weak
+/// **Source.** Kollig and Keller 2004, equations 2 and 3; soft: T. Kollig and A. Keller, "Illumination in the Presence of Weak
 /// Singularities", 2006.
 ///
 /// # Example

@@ -11,11 +11,11 @@ use crate::{Balance, Densities, Float, Heuristic, Maximum};
 ///
 /// **Symbols.** `d_j`: density of technique `j`, all in the same measure. `beta` in `[1, inf]`: 1 is the
 /// [`Balance`] heuristic, 2 the usual choice, infinity the [`Maximum`] heuristic. (The sum runs over its own
-/// index; P0's print reuses `i`.)
+/// index; Kollig and Keller's print reuses `i`.)
 ///
 /// **Assumptions.** The laws of [`Heuristic`]; none beyond.
 ///
-/// **Unbiased.** For beta = 2 the variance is bounded by P0's equation 5, see
+/// **Unbiased.** For beta = 2 the variance is bounded by Kollig and Keller's equation 5, see
 /// [`variance_bound`](crate::variance_bound).
 /// Larger beta favour the technique of largest density, which pays where one technique fits the integrand well.
 ///
@@ -28,7 +28,7 @@ use crate::{Balance, Densities, Float, Heuristic, Maximum};
 /// techniques, the equivalent `w_i = 1 / sum_j (d_j / d_i)^beta` is used: a ratio that overflows stands for a weight
 /// of zero.
 ///
-/// **Source.** E. Veach and L. Guibas 1995, section 4; P0, section 3.1.
+/// **Source.** E. Veach and L. Guibas 1995, section 4; Kollig and Keller 2004, section 3.1.
 ///
 /// # Example
 /// ```
@@ -128,7 +128,7 @@ impl Default for Power {
 impl<F: Float> Heuristic<F> for Power {
     // Always inlined: with a constant exponent and an array of two all but a few instructions vanish.
     #[inline(always)]
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         match self.exponent {
             Exponent::One => Balance.weight(technique, densities),
             Exponent::Two => square_weight(technique, densities),
@@ -141,7 +141,7 @@ impl<F: Float> Heuristic<F> for Power {
 
 /// beta = 2; the two techniques of next event estimation in a few instructions.
 #[inline(always)]
-fn square_weight<F: Float>(technique: usize, densities: &impl Densities<F>) -> F {
+fn square_weight<F: Float>(technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
     if densities.len() != 2 {
         return ratio_weight(technique, densities, |x| x * x);
     }

@@ -71,7 +71,7 @@ impl<const N: usize> ProgressiveOptimal<N> {
     ///
     /// # Errors
     /// [`OptimalError::Value`], [`OptimalError::DensitySum`] or [`OptimalError::Techniques`]; nothing is added then.
-    pub fn add<F: Float>(&mut self, f: f64, densities: &impl Densities<F>) -> Result<(), OptimalError> {
+    pub fn add<F: Float>(&mut self, f: f64, densities: &(impl Densities<F> + ?Sized)) -> Result<(), OptimalError> {
         let contribution = self.weights.contribution(f, densities)?;
         self.moments.add(f, densities)?;
         self.current += contribution;

@@ -44,11 +44,11 @@ impl<F, V: Verdict<F>> Verdict<F> for Option<V> {
 ///
 /// **Symbols.** `l`: number of techniques; `s_k` in `[0, 1]`: the share that technique `k` takes of what the
 /// techniques before it
-/// left, zero or one for a hard stratification. Any function of the sample will do: P0 takes `s_k = 1` where the
+/// left, zero or one for a hard stratification. Any function of the sample will do: Kollig and Keller 2004 takes `s_k = 1` where the
 /// geometry
 /// term between the path vertices `x_k` and `x_(k+1)` is below a threshold (see
 /// [`GeometryPartition`](crate::GeometryPartition)).
-/// The last technique takes the rest: P0's print leaves its weight out, and without it the sum is not one.
+/// The last technique takes the rest: Kollig and Keller's print leaves its weight out, and without it the sum is not one.
 ///
 /// **Assumptions.** The predicate depends on the sample alone, not on the technique that generated it. A technique that
 /// cannot generate the sample must get no weight: for it the predicate returns `None`, or a share of zero
@@ -64,7 +64,7 @@ impl<F, V: Verdict<F>> Verdict<F> for Option<V> {
 /// **Cost.** Asks for **no density**; the predicate at most once for each technique up to the one in question
 /// (and for those after it only after [`without_last`](Self::without_last)), never for the last.
 ///
-/// **Source.** P0, section 3.2; the soft form follows T. Kollig and A. Keller, "Illumination in the Presence of Weak
+/// **Source.** Kollig and Keller 2004, section 3.2; the soft form follows T. Kollig and A. Keller, "Illumination in the Presence of Weak
 /// Singularities", 2006.
 ///
 /// # Example
@@ -100,7 +100,7 @@ impl<P> Stratification<P> {
         Self { predicate, order: Order::Technique, last_possible: true }
     }
 
-    /// P0's indices: technique `i` of `l` has `i` light vertices, and technique `l-1` is tried first.
+    /// Kollig and Keller's indices: technique `i` of `l` has `i` light vertices, and technique `l-1` is tried first.
     ///
     /// `predicate(k)` gives the [`Verdict`] on connecting eye path vertex `x_k` to light path vertex `x_(k+1)`,
     /// `k` from 1 to `l-1`, which is technique `i = l - k`.
@@ -122,7 +122,7 @@ impl<F: Float, V: Verdict<F>, P: Fn(usize) -> V> Heuristic<F> for Stratification
     /// # Panics
     /// If `technique >= densities.len()`.
     #[inline]
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let len = densities.len();
         assert!(technique < len, "technique {technique} of {len}");
         let last = len - 1;
@@ -167,7 +167,7 @@ impl<F: Float, V: Verdict<F>, P: Fn(usize) -> V> Heuristic<F> for Stratification
 ///
 /// **Cost.** One multiplication.
 ///
-/// **Source.** P0, section 2, steps a and b.
+/// **Source.** Kollig and Keller 2004, section 2, steps a and b.
 ///
 /// # Example
 /// ```

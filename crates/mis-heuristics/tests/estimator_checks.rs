@@ -54,7 +54,7 @@ fn optimal_weights() {
 struct Forgetful;
 
 impl Heuristic<f64> for Forgetful {
-    fn weight(&self, technique: usize, densities: &impl Densities<f64>) -> f64 {
+    fn weight(&self, technique: usize, densities: &(impl Densities<f64> + ?Sized)) -> f64 {
         let sum: f64 = (0..densities.len()).filter(|&i| i != technique).map(|i| densities.density(i)).sum();
         densities.density(technique) / (sum + 1e-300)
     }

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 /// The three laws of [`Heuristic`]; the sum may be off by a few roundings per technique.
 fn check_laws<F: Float>(
     heuristic: &impl Heuristic<F>,
-    densities: &impl Densities<F>,
+    densities: &(impl Densities<F> + ?Sized),
     slack: f64,
 ) -> Result<(), String> {
     let mut sum = 0.0;
@@ -30,6 +30,18 @@ fn check_laws<F: Float>(
     let tolerance = slack * (4 + densities.len()) as f64 * F::EPSILON.to_f64();
     let expected = if any { 1.0 } else { 0.0 };
     if (sum - expected).abs() <= tolerance { Ok(()) } else { Err(format!("the weights sum to {sum}")) }
+}
+
+#[test]
+fn slices_and_densities_behind_pointers_are_densities() {
+    let (array, expected) = ([6.0_f32, 2.0, 0.0], 0.9);
+    let slice: &[f32] = &array;
+    let pointer: &dyn Densities<f32> = &array;
+    assert_eq!(Power::TWO.weight(0, slice), expected);
+    assert_eq!(Power::TWO.weight(0, pointer), expected);
+    assert_eq!(Power::TWO.weight(0, &vec![6.0_f32, 2.0][..]), expected);
+    let model = MultiSample::new([1, 3, 1]);
+    assert_eq!(model.factor(&Balance, 0, slice), model.factor(&Balance, 0, &array));
 }
 
 /// All heuristics of the crate that see nothing but densities.
@@ -202,7 +214,7 @@ mod planted {
     /// The stratification heuristic as printed: the last weight is left out.
     struct AsPrinted;
     impl Heuristic<f64> for AsPrinted {
-        fn weight(&self, technique: usize, densities: &impl Densities<f64>) -> f64 {
+        fn weight(&self, technique: usize, densities: &(impl Densities<f64> + ?Sized)) -> f64 {
             if technique + 1 == densities.len() {
                 0.0
             } else {
@@ -214,7 +226,7 @@ mod planted {
     /// Ignores that a technique may be impossible.
     struct Equal;
     impl Heuristic<f64> for Equal {
-        fn weight(&self, _: usize, densities: &impl Densities<f64>) -> f64 {
+        fn weight(&self, _: usize, densities: &(impl Densities<f64> + ?Sized)) -> f64 {
             1.0 / densities.len() as f64
         }
     }
@@ -222,7 +234,7 @@ mod planted {
     /// Squares that leave the range.
     struct Unguarded;
     impl Heuristic<f32> for Unguarded {
-        fn weight(&self, technique: usize, densities: &impl Densities<f32>) -> f32 {
+        fn weight(&self, technique: usize, densities: &(impl Densities<f32> + ?Sized)) -> f32 {
             let square = |i| densities.density(i) * densities.density(i);
             square(technique) / (0..densities.len()).map(square).sum::<f32>()
         }
@@ -231,7 +243,7 @@ mod planted {
     /// Several largest densities, all of which take everything.
     struct Ties;
     impl Heuristic<f64> for Ties {
-        fn weight(&self, technique: usize, densities: &impl Densities<f64>) -> f64 {
+        fn weight(&self, technique: usize, densities: &(impl Densities<f64> + ?Sized)) -> f64 {
             let largest = (0..densities.len()).map(|i| densities.density(i)).fold(0.0, f64::max);
             if densities.density(technique) == largest { 1.0 } else { 0.0 }
         }

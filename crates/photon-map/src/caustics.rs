@@ -22,11 +22,11 @@ pub enum LastBounce {
 /// caustic  <=>  the last bounce was specular, or glossy with roughness <= threshold
 /// ```
 ///
-/// P2 says "scattered by a non-diffuse surface". Taken literally for any bounce of the path, nearly every photon of a
+/// Keller and Wald 2000 says "scattered by a non-diffuse surface". Taken literally for any bounce of the path, nearly every photon of a
 /// scene with some glass in it would be caustic; what focuses light is the last bounce. A photon that comes
 /// directly from a light is never caustic.
 ///
-/// **Source.** P2, section 2.2.
+/// **Source.** Keller and Wald 2000, section 2.2.
 ///
 /// # Example
 /// ```

@@ -22,7 +22,7 @@ pub(crate) const LEAST: f64 = f64::EPSILON / 2.0;
 /// [`check_deposition`](crate::check::check_deposition) tests this on anybody's implementation, and
 /// [`check_positive`](crate::check::check_positive) that `p > 0`.
 ///
-/// **Source.** P2, section 2.1.
+/// **Source.** Keller and Wald 2000, section 2.1.
 ///
 /// # Example
 /// Closures are depositions.
@@ -124,7 +124,7 @@ fn sanitised(p: f64) -> f64 {
 /// | [`Floor`](Self::Floor) | `p = eps` | unbiased; few photons of `1 / eps` times the flux |
 /// | [`Cutoff`](Self::Cutoff) | `p = 0` | **biased**: what lies there is lost |
 ///
-/// **Source.** P2, section 2.3.
+/// **Source.** Keller and Wald 2000, section 2.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// The smallest probability, in `(0, 1]`.

@@ -150,14 +150,14 @@ pub struct GuidedDirection {
 /// **Unbiased** for every histogram, since `p >= (1 - b) p_0 > 0` where `f cos > 0`; the weight is at most
 /// `1 / (1 - b)` times that of the original sampling. Dirac deltas have no density: scatter by them without guidance.
 ///
-/// Photons get unequal flux by it, which makes density estimates noisier; P2 therefore guides *where photons are kept*
+/// Photons get unequal flux by it, which makes density estimates noisier; Keller and Wald 2000 therefore guides *where photons are kept*
 /// instead. Both go together: trace with this, multiply the flux by the weight, then let a
 /// [`Deposition`](crate::Deposition) decide. For the choice among lights there is
 /// [`LightTable::guided`](crate::LightTable::guided).
 ///
 /// **Cost.** That of the histogram, which has to be filled from the importons around each point.
 ///
-/// **Source.** I. Peter and G. Pietrek 1998; the mixture makes it unbiased. P2, "Remaining problems".
+/// **Source.** I. Peter and G. Pietrek 1998; the mixture makes it unbiased. Keller and Wald 2000, "Remaining problems".
 ///
 /// # Example
 /// ```

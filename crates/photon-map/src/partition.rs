@@ -23,10 +23,10 @@ use crate::{Deposition, DepositionExt, Flux, Photon, Photons};
 /// [`trajectories`]: Self::trajectories
 ///
 /// All three are one piece of code: a gate that does not need `p`, then the deposition. For the first one `u_1 / q`
-/// is the second number: given `u_1 < q` it is uniform, and `u_1 / q < p` is what P2 writes. So it does not ask for
+/// is the second number: given `u_1 < q` it is uniform, and `u_1 / q < p` is what Keller and Wald 2000 writes. So it does not ask for
 /// `p` in vain either.
 ///
-/// P2 prints the two-number variant with `p` in both tests; the first is against `q`. In the trajectory variant there
+/// Keller and Wald 2000 prints the two-number variant with `p` in both tests; the first is against `q`. In the trajectory variant there
 /// is no further `1 / q`: the global map has seen `floor(q N)` paths, and is divided by that, exactly, whatever was
 /// rounded.
 ///
@@ -39,7 +39,7 @@ use crate::{Deposition, DepositionExt, Flux, Photon, Photons};
 /// **Cost.** A comparison; the third variant traces nothing for the global map beyond `floor(q N)` paths, and a
 /// renderer may end those paths as soon as they cannot become caustic.
 ///
-/// **Source.** P2, sections 2.2 and 2.3.
+/// **Source.** Keller and Wald 2000, sections 2.2 and 2.3.
 ///
 /// # Example
 /// ```

@@ -10,7 +10,7 @@ use crate::vector::is_finite;
 /// L_i(x, wi) cos dwi dA  ~  sum over photons k of  delta(x - x_k) delta(wi - wi_k) flux_k / N
 /// ```
 ///
-/// **Symbols.** `flux`: watts per component, of one of `N` paths: `N` is divided out by the map, not here. (P2 calls it
+/// **Symbols.** `flux`: watts per component, of one of `N` paths: `N` is divided out by the map, not here. (Keller and Wald 2000 calls it
 /// irradiance; what a path carries is flux.) `wi`: unit vector, away from the surface, to where the light came from.
 ///
 /// An *importon* is a `Photon<f32>` on a path that began at the sensor; its flux is importance.

@@ -76,7 +76,7 @@ pub enum ProjectionError {
 /// **Cost.** One multiplication per sample; four bytes per marked cell, one bit per cell.
 ///
 /// **Source.** H. W. Jensen and N. J. Christensen, "Photon maps in bidirectional Monte Carlo ray tracing of complex
-/// objects", Computers & Graphics 19(2), 1995. P2 compares with it in section 2.2.
+/// objects", Computers & Graphics 19(2), 1995. Keller and Wald 2000 compares with it in section 2.2.
 ///
 /// # Example
 /// ```

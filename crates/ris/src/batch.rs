@@ -24,7 +24,7 @@ use crate::{Float, Proposal, Target};
 ///
 /// **Bad input** is treated as by the reservoir.
 ///
-/// **Source.** P3, section 3; Rubin 1987; the comb of stratified selection is systematic resampling (Kitagawa 1996).
+/// **Source.** Talbot, Cline and Egbert 2005, section 3; Rubin 1987; the comb of stratified selection is systematic resampling (Kitagawa 1996).
 ///
 /// ```
 /// use ris::{Batch, PrefixSums, Proposal};

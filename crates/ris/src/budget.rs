@@ -4,7 +4,7 @@ use crate::{Float, Uniform};
 
 /// `M` candidates for each of `N` samples, both real.
 ///
-/// Whoever draws rounds them up or down at random such that the expectation stays (P3, end of section 4.2). A rounded count
+/// Whoever draws rounds them up or down at random such that the expectation stays (Talbot, Cline and Egbert 2005, end of section 4.2). A rounded count
 /// has `E[1/M] > 1/E[M]`: the prediction of variances accounts for it, see [`mean_inverse`](Self::mean_inverse).
 ///
 /// Numbers below one, and NaN, count as one; those above `2^24` as `2^24`.

@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 /// `T_X` and `T_Y`, in any unit of time they share (or in rays).
 ///
 /// ```text
-/// T = N (M T_X + T_Y)                                                           (P3, section 4.2, without r(M))
+/// T = N (M T_X + T_Y)                                                           (Talbot, Cline and Egbert 2005, section 4.2, without r(M))
 /// ```
 ///
 /// **Symbols.** `T_X`: drawing a candidate and evaluating source and target; `T_Y`: what a selected sample costs, that is
-/// everything that is done once per sample: integrand, visibility, selection. P3 says "the time to compute
+/// everything that is done once per sample: integrand, visibility, selection. Talbot, Cline and Egbert 2005 says "the time to compute
 /// equation 1" in section 4.2 and "the time to check visibility" in 5.1; what is really spent counts.
 ///
 /// ```
@@ -121,7 +121,7 @@ impl CostModel {
         Self::from_timings(&timings[0], &timings[1])
     }
 
-    /// The robust choice `M = T_Y / T_X`, at least 1 (P3, equation 4), for one sample.
+    /// The robust choice `M = T_Y / T_X`, at least 1 (Talbot, Cline and Egbert 2005, equation 4), for one sample.
     ///
     /// It gives candidates and samples equal time. Within any time no other choice has more than twice its `M N` and none more
     /// than twice its `N`, so, for real counts, **if `e3 >= e2` in every component** its variance is at most twice the least. Where more candidates hurt

@@ -7,7 +7,7 @@ use crate::{Budget, Float, Reservoir, Source, Target, Uniform};
 /// Resampled importance sampling.
 ///
 /// ```text
-/// I = 1/N sum_i  f(Y_i) W_i,     W_i = 1/g(Y_i) * 1/M sum_j g(X_ij) / p(X_ij)                    (P3, equation 1)
+/// I = 1/N sum_i  f(Y_i) W_i,     W_i = 1/g(Y_i) * 1/M sum_j g(X_ij) / p(X_ij)                    (Talbot, Cline and Egbert 2005, equation 1)
 /// ```
 ///
 /// **Symbols.** `f`: the integrand, of any type that can be added and scaled; `X_ij`: candidates of density `p` (of a
@@ -24,7 +24,7 @@ use crate::{Budget, Float, Reservoir, Source, Target, Uniform};
 ///
 /// **Cost.** `N (M T_X + T_Y)`, with `T_X` for drawing a candidate and evaluating `g`, `T_Y` for evaluating `f`.
 ///
-/// **Source.** P3, section 4.
+/// **Source.** Talbot, Cline and Egbert 2005, section 4.
 ///
 /// # Example
 /// ```

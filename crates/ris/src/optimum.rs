@@ -7,7 +7,7 @@ use crate::{Budget, CostModel, VarianceModel};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Objective<const C: usize> {
-    /// P3's equation 3, `M = sqrt(|e3 - e2| T_Y / (|e2 - e1| T_X))` with Euclidean norms: the sum of the two norms over `M` and 1.
+    /// Talbot, Cline and Egbert's equation 3, `M = sqrt(|e3 - e2| T_Y / (|e2 - e1| T_X))` with Euclidean norms: the sum of the two norms over `M` and 1.
     ///
     /// By the triangle inequality this minimises an **upper bound** of the norm of the variance, not that norm; and norms hide
     /// signs, so a negative `e3 - e2` asks for more candidates where they hurt. Here a sum of `e3 - e2` that is negative gives
@@ -48,7 +48,7 @@ impl<const C: usize> VarianceModel<C> {
 
     /// The budget of least predicted variance that takes `time` in all, in the unit of `cost`.
     ///
-    /// As P3, section 4.2: `M` by equation 3 clamped to at least 1; `N = T / (M T_X + T_Y)` clamped to at least 1; `M` again from
+    /// As Talbot, Cline and Egbert 2005, section 4.2: `M` by equation 3 clamped to at least 1; `N = T / (M T_X + T_Y)` clamped to at least 1; `M` again from
     /// what is left. Less time than `T_X + T_Y` would make that `M` smaller than one: it is clamped again, and one sample of one
     /// candidate takes longer than `time`.
     pub fn optimal(&self, cost: CostModel, time: f64, objective: Objective<C>) -> Budget {

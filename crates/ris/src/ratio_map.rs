@@ -1,4 +1,4 @@
-//! The optimal number of candidates for each pixel: the lower image of P3's figure 3.
+//! The optimal number of candidates for each pixel: the lower image of Talbot, Cline and Egbert's figure 3.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -8,7 +8,7 @@ use crate::{CostModel, Objective, VarianceModel};
 /// A variance model for each pixel, and the map of the best `M` that follows.
 ///
 /// Single pixels have few candidates and estimates of `e1`, `e2`, `e3` are noisy, so [`candidates`](Self::candidates) pools a square
-/// of neighbours: what P3 section 4.3 warns of ("severe noise and artifacts") shows with radius zero.
+/// of neighbours: what Talbot, Cline and Egbert 2005 section 4.3 warns of ("severe noise and artifacts") shows with radius zero.
 ///
 /// Choosing `M` from candidates that the estimate also uses would bias it; take other random numbers for the map.
 ///

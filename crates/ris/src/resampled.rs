@@ -44,7 +44,7 @@ pub struct Selected<X, F = f32> {
 /// A `Resampled` is itself a candidate for the next resampling, with `W` in place of `1/p`:
 /// [`Reservoir::merge`](crate::Reservoir::merge), [`Pairwise`](crate::Pairwise).
 ///
-/// **Source.** P3, equation 1; Lin, Kettunen, Bitterli, Pantaleoni, Yuksel, Wyman 2022 (*Generalized resampled importance
+/// **Source.** Talbot, Cline and Egbert 2005, equation 1; Lin, Kettunen, Bitterli, Pantaleoni, Yuksel, Wyman 2022 (*Generalized resampled importance
 /// sampling*), section 4, for the name of `W`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resampled<X, F = f32> {

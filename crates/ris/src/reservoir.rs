@@ -27,7 +27,7 @@ use crate::{Float, OneNumber, Proposal, Source, Target, Uniform};
 /// **Precision.** With `f32` the count stops at `2^24` candidates, and a `u` of 24 bits selects a candidate of share `s` with a
 /// relative error of up to `2^-24 / s`: take `f64` for streams of tens of thousands.
 ///
-/// **Source.** P3, section 3 and equation 1; Chao 1982 for the selection; Bitterli, Wyman, Pharr, Shirley, Lefohn, Jarosz
+/// **Source.** Talbot, Cline and Egbert 2005, section 3 and equation 1; Chao 1982 for the selection; Bitterli, Wyman, Pharr, Shirley, Lefohn, Jarosz
 /// 2020 (*Spatiotemporal reservoir resampling*) for its use in rendering.
 ///
 /// # Example

@@ -5,12 +5,12 @@ use crate::{Budget, Float};
 /// A streaming estimate of the three numbers that the variance of resampled importance sampling consists of.
 ///
 /// ```text
-/// V(M, N) = 1/N [ (e3 - e2)/M + (e2 - e1) ]                                               (P3, equation 2)
+/// V(M, N) = 1/N [ (e3 - e2)/M + (e2 - e1) ]                                               (Talbot, Cline and Egbert 2005, equation 2)
 /// e1 = (E[f/p])^2     e2 = E[f^2/(g p)] E[g/p]     e3 = E[f^2/p^2]
 /// ```
 ///
 /// **Symbols.** `f`: the integrand, with `C` components; `g`: the target, not normalised; `p`: the density of the candidates, over
-/// which the expectations `E` are taken. (P3 prints `E(f/p)^2` for `e1`: the square is outside.)
+/// which the expectations `E` are taken. (Talbot, Cline and Egbert 2005 prints `E(f/p)^2` for `e1`: the square is outside.)
 ///
 /// **Estimates.** From `n` independent candidates with `a = f/p`, `b = f^2/(g p)`, `c = g/p`:
 ///
@@ -29,7 +29,7 @@ use crate::{Budget, Float};
 /// Where `g = 0` and `f != 0` resampling is biased and `e2` infinite: such candidates are counted, see
 /// [`unsupported`](Self::unsupported), and left out of `e2`.
 ///
-/// **Source.** P3, section 4.1; Talbot 2005 for the derivation; `docs/ris.md` repeats it.
+/// **Source.** Talbot, Cline and Egbert 2005, section 4.1; Talbot 2005 for the derivation; `docs/ris.md` repeats it.
 ///
 /// # Example
 /// ```

@@ -190,7 +190,7 @@ fn mixtures_nest_pass_failures_on_and_clamp() {
 struct Own;
 
 impl<F: mis_heuristics::Float + ris::Float> Heuristic<F> for Own {
-    fn weight(&self, technique: usize, densities: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, densities: &(impl Densities<F> + ?Sized)) -> F {
         let all: Vec<F> = (0..densities.len()).map(|k| densities.density(k)).collect();
         BalanceWeights.weight(technique, &all)
     }

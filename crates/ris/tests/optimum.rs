@@ -67,7 +67,7 @@ fn norm_of_variance_is_the_brute_force_optimum_and_the_norm_of_parts_an_upper_bo
         let best = objective(scan(cost, 1e6, objective));
         let by_norm = objective(model.optimal_candidates(cost, Objective::NormOfVariance));
         assert!(by_norm <= best * (1.0 + 1e-6), "{by_norm} {best}");
-        // P3's equation 3 minimises the sum of the norms of the parts, which is no less.
+        // Talbot, Cline and Egbert's equation 3 minimises the sum of the norms of the parts, which is no less.
         let bound = |m: f64| (norm(&Expectations::reducible) / m + norm(&Expectations::remaining)) * (m + 30.0) / 1e6;
         let chosen = model.optimal_candidates(cost, Objective::NormOfParts);
         let reducible: f64 = all.iter().map(Expectations::reducible).sum();
@@ -183,7 +183,7 @@ fn costs_are_measured_and_checked() {
     };
     assert_eq!(CostModel::measure(8, clock, candidate, || 1), CostModel::new(0.25, 1.0));
     assert_eq!(CostModel::measure(8, || 1.0, || 1, || 1), Err(CostError::Candidate(0.0)));
-    // P3, figure 4.
+    // Talbot, Cline and Egbert 2005, figure 4.
     let paper = CostModel::new(1.0, 15.75).unwrap();
     assert_eq!(paper.robust().candidates, 15.75);
 }

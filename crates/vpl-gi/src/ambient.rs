@@ -14,7 +14,7 @@ use crate::partition::Partition;
 /// `1 - A` is what the scattered rays of [`RobustIgi`](crate::RobustIgi) have to look at. Near geometry alone is looked at, since the ray ends at the
 /// partition's reach.
 ///
-/// **Unbiased.** In `[0, 1]`; 1 is open. **Cost.** One closest-hit ray of bounded length. **Source.** P0, section 4.
+/// **Unbiased.** In `[0, 1]`; 1 is open. **Cost.** One closest-hit ray of bounded length. **Source.** Kollig and Keller 2004, section 4.
 pub fn openness<S: Scene>(scene: &S, vertex: &S::Vertex<'_>, partition: &Partition, sampler: &mut impl Sampler) -> f32 {
     let (point, normal) = (vertex.point(), facing_normal(vertex));
     let wi = Frame::from_z(normal).to_world(sample_cosine_hemisphere(sampler.next_2d()).into());

@@ -5,7 +5,7 @@ use scene_core::Vertex;
 /// An estimate of caustics, for instance a photon map.
 ///
 /// Connections cannot reach a specular vertex. Hence light that comes from a specular surface to one that is not is found only
-/// if a scattered ray hits the specular surface and then, by chance, the light (P0, section 4.2: "some caustic paths cannot be captured
+/// if a scattered ray hits the specular surface and then, by chance, the light (Kollig and Keller 2004, section 4.2: "some caustic paths cannot be captured
 /// efficiently by any path tracing algorithm, however, these easily are complemented by a caustic photon map").
 ///
 /// # Laws

@@ -5,7 +5,7 @@ use mis_heuristics::{GeometryPartition, PartitionError};
 /// The threshold of the geometry term, in units that the caller chooses.
 ///
 /// The geometry term has the unit 1/length^2, and so has its threshold: the same number means another image cost after
-/// the scene has been scaled (P0, section 4.1.2). The normalised threshold does not.
+/// the scene has been scaled (Kollig and Keller 2004, section 4.1.2). The normalised threshold does not.
 ///
 /// ```
 /// use vpl_gi::{Partition, Threshold};
@@ -52,7 +52,7 @@ impl Threshold {
 ///
 /// ```text
 /// G = |cos_x cos_y| / |x - y|^2
-/// hard:      s = 1 if G < t, else 0                        (P0, equation 2)
+/// hard:      s = 1 if G < t, else 0                        (Kollig and Keller 2004, equation 2)
 /// soft:      s = min(1, t / G)                             (connections take min(G, t))
 /// balance:   s = t / (t + G)                               (connections take less than t)
 /// distance:  s = 1 if 1 / |x - y|^2 < t, else 0
@@ -65,7 +65,7 @@ impl Threshold {
 /// forms and any `t`. Coincident points (`G` infinite or NaN) are always left to the scattered ray. `t = 0` is path tracing,
 /// `t = inf` instant radiosity, for all forms.
 ///
-/// **Source.** P0, section 2 and figure 2, where the four are a) soft without the scattered ray, b) balance, c) distance, d) hard;
+/// **Source.** Kollig and Keller 2004, section 2 and figure 2, where the four are a) soft without the scattered ray, b) balance, c) distance, d) hard;
 /// soft: Kollig and Keller, "Illumination in the Presence of Weak Singularities", 2006.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Partition {

@@ -26,7 +26,7 @@ pub enum Residual {
 /// Final gathering: at the first vertex that is not specular, connections find direct light alone, and `rays` scattered rays
 /// the rest; from their next vertices on everything is as usual. Unbiased.
 ///
-/// Source: P0, section 4 ("the scattering step 2.b could be considered as a secondary final gather").
+/// Source: Kollig and Keller 2004, section 4 ("the scattering step 2.b could be considered as a secondary final gather").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FinalGathering {
     /// Number of rays; one at least.
@@ -42,7 +42,7 @@ pub struct FinalGathering {
 ///    end:      if nothing is left
 /// ```
 /// **Symbols.** `x_1`: what the camera sees; `beta`: throughput of the eye path; `s`: share of connections, a [`Partition`] (with the hard
-/// one, P0's: 1 where `G < t`); `left`: product of `1 - s`; `I_j`: intensity of light `y_j` over its density and the number of
+/// one, Kollig and Keller's: 1 where `G < t`); `left`: product of `1 - s`; `I_j`: intensity of light `y_j` over its density and the number of
 /// light paths; `q`: probability to survive Russian roulette. `L` in W/(m^2 sr).
 ///
 /// **Assumptions.** A technique that cannot generate a path takes no share of it: edges from or to a Dirac delta go to the
@@ -59,7 +59,7 @@ pub struct FinalGathering {
 /// **Cost.** Per eye vertex one shading loop over the lights and their shadow rays. Scattered rays end at `sqrt(|cos| / t)` where
 /// [`Partition::reach`] bounds them: in scenes without specular surfaces, or with a caustic map; and without glossy ones, too, if [`peaks`](Self::peaks) count.
 ///
-/// **Source.** P0, sections 2 and 3.2. The weight of the technique with `i` light vertices and `l` segments is
+/// **Source.** Kollig and Keller 2004, sections 2 and 3.2. The weight of the technique with `i` light vertices and `l` segments is
 /// `w(l,i) = s(x_(l-i), x_(l-i+1)) prod_(k<l-i) (1 - s(x_k, x_(k+1)))`, `k` from 1, and `w(l,0) = prod_(k<l) (1 - s)`, which the print
 /// leaves out. "Attenuated by the colour of the BSDF" means the factor `f |cos| / p`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +80,7 @@ pub struct RobustIgi {
     /// ```text
     /// s(x_k, x_(k+1)) of  G a b,    a = max(1, pi p(x_k -> x_(k+1)) / |cos_k|),    b = max(1, pi p*(x_(k+1) -> x_k) / |cos_(k+1)|)
     /// ```
-    /// with the densities `p` and `p*` of scattering on eye and light paths, and cosines with shading normals. P0 looks at `G` alone, which
+    /// with the densities `p` and `p*` of scattering on eye and light paths, and cosines with shading normals. Kollig and Keller 2004 looks at `G` alone, which
     /// bounds contributions if surfaces are diffuse (`a = b = 1` then). Where they are glossy, a light that lies in the
     /// direction of a mirror is as bright as one that is too close.
     pub peaks: bool,

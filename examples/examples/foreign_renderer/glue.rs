@@ -26,7 +26,7 @@ pub fn resampled(scene: &Scene, x: &Hit<'_>, mut u: &mut Numbers<'_>) -> V {
 // glue: mis-heuristics
 pub struct ThreeHalves;
 impl Heuristic<f64> for ThreeHalves {
-    fn weight(&self, technique: usize, densities: &impl Densities<f64>) -> f64 {
+    fn weight(&self, technique: usize, densities: &(impl Densities<f64> + ?Sized)) -> f64 {
         let power = |i| densities.density(i).max(0.0).powf(1.5);
         if power(technique) > 0.0 { power(technique) / (0..densities.len()).map(power).sum::<f64>() } else { 0.0 }
     }

@@ -139,7 +139,7 @@ pub struct LightAlone;
 
 impl<F: Float> Heuristic<F> for LightAlone {
     #[inline]
-    fn weight(&self, technique: usize, _: &impl Densities<F>) -> F {
+    fn weight(&self, technique: usize, _: &(impl Densities<F> + ?Sized)) -> F {
         if technique == LIGHT { F::ONE } else { F::ZERO }
     }
 }

@@ -51,7 +51,7 @@ pub struct Estimate<T> {
 /// **Memory.** 32 bytes per photon with RGB flux and 16 to 32 for the grid: 48 to 64 MB per million photons, 3.2 GB
 /// at most for 50 million; twice the photons and the grid while it is built. [`bytes`](Self::bytes) says it exactly.
 ///
-/// **Source.** H. W. Jensen, "Global illumination using photon maps", 1996; P2, section 2.
+/// **Source.** H. W. Jensen, "Global illumination using photon maps", 1996; Keller and Wald 2000, section 2.
 ///
 /// # Example
 /// ```

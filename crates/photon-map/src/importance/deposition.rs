@@ -13,7 +13,7 @@ pub trait DirectionWeight {
     fn weight(&self, photon: [f32; 3], importon: impl FnOnce() -> [f32; 3]) -> f64;
 }
 
-/// All directions matter alike: the probability depends on the place alone, as in P2.
+/// All directions matter alike: the probability depends on the place alone, as in Keller and Wald 2000.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AnyDirection;
 
@@ -46,7 +46,7 @@ impl<G: Fn([f32; 3], [f32; 3]) -> f64> DirectionWeight for G {
 /// **Cost.** One density estimate per photon, which is dear; [`MapPartition`](crate::MapPartition) asks for it only
 /// when it must. Within a fixed radius nothing is allocated.
 ///
-/// **Source.** P2, sections 2.1 and 2.3.
+/// **Source.** Keller and Wald 2000, sections 2.1 and 2.3.
 ///
 /// # Example
 /// ```

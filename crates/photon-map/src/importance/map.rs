@@ -16,12 +16,12 @@ use crate::{DensityEstimation, DirectionalHistogram, GatherPoint, PhotonMap, Scr
 /// that came from `wi_k`, a [`DirectionWeight`] (a BSDF for instance).
 ///
 /// **Biased** as every density estimate, and harmless: what is made of it here are probabilities, which need not be
-/// right. Importance shines through thin walls, for photons that are asked about have no normal; P2 calls it energy
+/// right. Importance shines through thin walls, for photons that are asked about have no normal; Keller and Wald 2000 calls it energy
 /// bleeding.
 ///
 /// **Cost.** A density estimate for each question.
 ///
-/// **Source.** P2, section 2.3; I. Peter and G. Pietrek 1998.
+/// **Source.** Keller and Wald 2000, section 2.3; I. Peter and G. Pietrek 1998.
 ///
 /// # Example
 /// ```

@@ -7,9 +7,9 @@
 /// ```
 ///
 /// **Symbols.** `W(x_i)`: importance at the points that test rays from the camera hit first. Quantile 0 is their
-/// minimum, as P2 has it: every photon is kept where any test ray found an importon.
+/// minimum, as Keller and Wald 2000 has it: every photon is kept where any test ray found an importon.
 ///
-/// **What if a test ray finds no importon?** P2's minimum is zero then, and `f` infinite: `p = 1` wherever there is
+/// **What if a test ray finds no importon?** Keller and Wald's minimum is zero then, and `f` infinite: `p = 1` wherever there is
 /// any importance, 0 or the floor elsewhere, and nothing is saved. Here such queries are left out of the quantile and
 /// counted: [`empty_share`](Self::empty_share). They lie in places that the camera sees and `p` does not know of: a
 /// floor keeps the estimate unbiased there, with few photons of much flux; a cutoff makes these places black. So if
@@ -21,7 +21,7 @@
 ///
 /// **Cost.** A selection, linear in the number of queries.
 ///
-/// **Source.** P2, section 2.3.
+/// **Source.** Keller and Wald 2000, section 2.3.
 ///
 /// # Example
 /// ```

@@ -11,7 +11,7 @@ use crate::Scratch;
 /// **Memory.** 4 bytes per light of the scene, and 8 per contributing light.
 ///
 /// **Source.** P. Briggs and L. Torczon, "An efficient representation for sparse sets", 1993; the lights are `L_con`
-/// of P2, section 3.
+/// of Keller and Wald 2000, section 3.
 ///
 /// # Example
 /// ```

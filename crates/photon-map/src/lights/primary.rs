@@ -70,7 +70,7 @@ impl PrimaryPhotons {
 /// **Cost.** O(photons in the ball), and `O(c log c)` for `c` contributing lights; nothing is proportional to the
 /// number of lights.
 ///
-/// **Source.** P2, section 3.
+/// **Source.** Keller and Wald 2000, section 3.
 ///
 /// # Example
 /// ```

@@ -7,7 +7,7 @@ use super::{ContributingLights, LightTable};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Allocation {
-    /// Expected counts in proportion to importance: P2's stratification by area. A light of little importance
+    /// Expected counts in proportion to importance: Keller and Wald's stratification by area. A light of little importance
     /// often gets no ray, and then counts all the more when it gets one.
     Proportional,
     /// With enough rays, one for each light, the rest in proportion. With fewer, lights are sorted by importance: the
@@ -57,7 +57,7 @@ pub enum SelectionError {
 /// contributing lights, from [`PrimaryPhotonMap`](crate::PrimaryPhotonMap); `S_con`, `S_other`: rays for those in `C`
 /// and for all others; `a_j`: the weight in the [`LightTable`]; `m_j`: importance of a contributing light. `u`: one
 /// uniform number; it makes `E n_j = e_j` exactly, and their sum `S_con` always. With fewer rays than lights this is
-/// systematic resampling, with more it is stratification with unbiased rounding: one piece of code for P2's two
+/// systematic resampling, with more it is stratification with unbiased rounding: one piece of code for Keller and Wald's two
 /// cases.
 ///
 /// **Assumptions.** `s_j` is zero or estimated without bias for each ray. The set `C` is chosen independently of the
@@ -73,7 +73,7 @@ pub enum SelectionError {
 /// nothing allocated once the vectors have grown. If `C` is empty its rays are not shot; if `C` is everything, the
 /// others' are not.
 ///
-/// **Source.** P2, section 3; G. Ward, "Adaptive shadow testing for ray tracing", 1991; systematic sampling: W. G.
+/// **Source.** Keller and Wald 2000, section 3; G. Ward, "Adaptive shadow testing for ray tracing", 1991; systematic sampling: W. G.
 /// Madow and L. H. Madow, "On the theory of systematic sampling", 1944.
 ///
 /// # Example

@@ -11,7 +11,7 @@ const UNITS: f64 = (1u64 << 32) as f64;
 /// P(j) = a_j / sum_i a_i,        P(j | not in C) = a_j / sum over i not in C of a_i
 /// ```
 ///
-/// **Symbols.** `a_j > 0`: the weight of light `j`: its emission area, its power, or 1 for P2's equation 1. `C`: the
+/// **Symbols.** `a_j > 0`: the weight of light `j`: its emission area, its power, or 1 for Keller and Wald's equation 1. `C`: the
 /// contributing lights.
 ///
 /// **Exact.** Weights are rounded to whole numbers of `max_i a_i / 2^32`, at least one, and their prefix sums are
@@ -22,7 +22,7 @@ const UNITS: f64 = (1u64 << 32) as f64;
 /// **Cost.** Building is O(M) for `M` lights, 8 bytes each. Sampling is a binary search, O(log M), with exclusion
 /// O(log |C| + log M): one random number, no rejection, hence no worst case when nearly everything is excluded.
 ///
-/// **Source.** P2, section 3, equation 1 (with `s_j` for the summand), generalised to unequal weights; inversion of a
+/// **Source.** Keller and Wald 2000, section 3, equation 1 (with `s_j` for the summand), generalised to unequal weights; inversion of a
 /// prefix sum with the excluded parts cut out.
 ///
 /// # Example
@@ -92,7 +92,7 @@ impl LightTable {
         Ok(Self { prefix })
     }
 
-    /// Equal weights: P2's equation 1.
+    /// Equal weights: Keller and Wald's equation 1.
     ///
     /// # Errors
     /// [`LightTableError::Count`] if there is no light or more than `2^30`.

@@ -43,7 +43,7 @@ impl<S: Sequence + Sync> SamplerFamily for FromSequence<S> {
 }
 
 /// The sampler of [`FromSequence`]: the sequence and 24 bytes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SequenceSampler<S>(Groups<Point<S>, [f32; 1]>);
 

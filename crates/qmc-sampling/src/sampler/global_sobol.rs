@@ -72,7 +72,7 @@ impl SamplerFamily for GlobalSobol {
 }
 
 /// The sampler of [`GlobalSobol`], 24 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GlobalSobolSampler {
     /// Hash of the seed and the forks.

@@ -38,7 +38,7 @@ impl SamplerFamily for PaddedLattice {
 }
 
 /// The sampler of [`PaddedLattice`], 24 bytes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PaddedLatticeSampler(Groups<Point, [f32; 1]>);
 

@@ -46,7 +46,7 @@ impl<I: SamplerImpl> SamplerFamily for OpenQmc<I> {
 }
 
 /// The sampler of [`OpenQmc`]: 32 bytes at most, 64 with blue noise, of which it refers to the tables.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct OpenQmcSampler<I: SamplerImpl>(Groups<Root<I>, [f32; 4]>);
 
 /// What the domains of groups and forks are derived from.

@@ -75,7 +75,7 @@ impl SamplerFamily for ZSobol {
 }
 
 /// The sampler of [`ZSobol`], 24 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ZSobolSampler {
     /// Place on the curve and number of the path, with the highest of their bits lowest.

@@ -1,4 +1,4 @@
-//! The techniques that P3 compares with, for experiments and as oracles.
+//! The techniques that Talbot, Cline and Egbert 2005 compares with, for experiments and as oracles.
 
 mod importance;
 mod inversion;

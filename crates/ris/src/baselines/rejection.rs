@@ -10,7 +10,7 @@ use crate::{Float, Source, Target, Uniform};
 /// **Exact** if the bound holds; where it does not, the density is that of `min(g, bound p)`, and the outcome tells. **Cost**:
 /// `bound / integral of g` candidates on average, without limit in a single case, so it takes a limit.
 ///
-/// P3 names its drawbacks: no stratification, no bound of the time, and a bound of the function has to be found.
+/// Talbot, Cline and Egbert 2005 names its drawbacks: no stratification, no bound of the time, and a bound of the function has to be found.
 ///
 /// **Source.** von Neumann 1951.
 ///

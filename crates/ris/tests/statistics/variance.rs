@@ -94,7 +94,7 @@ fn the_diffuse_sphere_has_variance_one_over_three_m() {
         })
         .collect();
     slope_is(check, &points, -1.0).expect_pass();
-    // What P3's figure 5 shows: M = 20 beside M = 1.
+    // What Talbot, Cline and Egbert's figure 5 shows: M = 20 beside M = 1.
     let check = SUITE.check("diffuse sphere, M = 20 against M = 1");
     let (twenty, one) = (measure(&mut uniforms, 20.0), measure(&mut uniforms, 1.0));
     variance_ratio_is(check, &twenty, &one, 0.05).expect_pass();

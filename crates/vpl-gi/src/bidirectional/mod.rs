@@ -22,7 +22,7 @@ pub use techniques::{Classical, PathHeuristic, PathTechniques, Stratified};
 /// Which techniques are combined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum TechniqueSet {
-    /// Eye paths hit lights and are connected to light paths: P0's techniques 0 to `l - 1`.
+    /// Eye paths hit lights and are connected to light paths: Kollig and Keller's techniques 0 to `l - 1`.
     #[default]
     WithoutLens,
     /// Light paths are connected to the lens as well (technique `l`), by [`Bidirectional::splats`].
@@ -59,7 +59,7 @@ pub enum TechniqueSet {
 /// **Cost.** Per eye vertex a shading loop over all light vertices; a weight and a shadow ray for each that contributes. A weight costs four densities of
 /// scattering beside the connection and one multiplication per vertex, and nothing if the heuristic asks for no densities.
 ///
-/// **Source.** P0, section 3.1; Veach and Guibas, "Bidirectional Estimators for Light Transport", 1994; Veach 1997, chapter 10; Lafortune and Willems, "Bi-directional
+/// **Source.** Kollig and Keller 2004, section 3.1; Veach and Guibas, "Bidirectional Estimators for Light Transport", 1994; Veach 1997, chapter 10; Lafortune and Willems, "Bi-directional
 /// Path Tracing", 1993. Light paths that several eye paths share: Keller and Heidrich, "Interleaved Sampling", 2001.
 ///
 /// # Example

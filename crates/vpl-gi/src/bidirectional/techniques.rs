@@ -81,12 +81,12 @@ impl<H: Heuristic<f64>> PathHeuristic for Classical<H> {
 /// w(l,i) = s(x_(l-i), x_(l-i+1)) prod_(k<l-i) (1 - s(x_k, x_(k+1))),  k from 1,      w(l,0) = prod_(k<l) (1 - s(x_k, x_(k+1)))
 /// ```
 /// **Symbols.** `s`: the [`Partition`]'s share of connections. Techniques that cannot generate the path take no share; where the light
-/// cannot be hit, the last that can takes the rest. The connection to the lens, which P0 does not know, takes what nothing else can
+/// cannot be hit, the last that can takes the rest. The connection to the lens, which Kollig and Keller 2004 does not know, takes what nothing else can
 /// generate.
 ///
 /// With shared light paths this is [`RobustIgi`](crate::RobustIgi), which does not trace what it knows to weigh zero: this one is for comparison.
 ///
-/// **Source.** P0, section 3.2; see [`Stratification`] for the weight that the print leaves out.
+/// **Source.** Kollig and Keller 2004, section 3.2; see [`Stratification`] for the weight that the print leaves out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stratified(pub Partition);
 

@@ -21,7 +21,7 @@ pub use vertex::{LightKind, VirtualPointLight};
 /// ```text
 /// sum over lights j of  f_x(wo, w) G(x, y_j) V(x, y_j) I_j(-w),    E over light paths: the radiance that x reflects
 /// ```
-/// with `I_j` the radiance that leaves `y_j` over its density, and over the number `M` of light paths. P0's equation 1 has
+/// with `I_j` the radiance that leaves `y_j` over its density, and over the number `M` of light paths. Kollig and Keller's equation 1 has
 /// neither the `1/M` nor the BSDF at `y_j`; both are in `I_j` here. Emission points are lights too, or direct light would be lost.
 ///
 /// Positions and normals are kept as structure of arrays for the loop over geometry terms; what lights need beyond lies beside.

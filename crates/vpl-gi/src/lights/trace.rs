@@ -18,7 +18,7 @@ use super::{LightKind, VirtualPointLight, VirtualPointLights};
 /// ```
 /// The walk is `scene-core`'s [`random_walk`]: photons and virtual point lights have the same vertices.
 ///
-/// **Unbiased** up to `max_length`. **Cost.** One closest hit per segment. **Source.** P0, section 2, step 1; Keller, "Instant
+/// **Unbiased** up to `max_length`. **Cost.** One closest hit per segment. **Source.** Kollig and Keller 2004, section 2, step 1; Keller, "Instant
 /// Radiosity", 1997.
 #[derive(Clone, Copy, Debug)]
 pub struct LightTracing<C> {
@@ -230,7 +230,7 @@ impl DeltaStarts {
 ///
 /// A sparse cloud is made by keeping each photon with a probability, and dividing its flux by it.
 ///
-/// **Source.** P0, section 2: "a very sparse global photon map".
+/// **Source.** Kollig and Keller 2004, section 2: "a very sparse global photon map".
 pub fn photon_cloud<'s, S, C, R>(
     scene: &'s S,
     tracing: &LightTracing<C>,
