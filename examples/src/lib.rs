@@ -3,6 +3,7 @@
 //! - [`estimators`]: what adds up paths, written against `scene-core`'s traits alone.
 //! - [`render`]: the loop over pixels, passes and threads.
 //! - [`choices`]: heuristics and light selection by name.
+//! - [`filtering`]: path space filtering of estimators; [`filters`]: filters by name.
 //! - [`light_paths`]: light paths by name.
 //! - [`light_photons`]: light selection by photons.
 //! - [`photons`]: photon maps by name.
