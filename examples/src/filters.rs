@@ -84,10 +84,10 @@ pub struct FilterSettings {
     /// Memory for a batch, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 1024)]
     pub filter_memory: u64,
-    /// Least cosine between normals that are alike; -1 is any. For psf-hash anything else means that normals round to the same half.
+    /// Least cosine between normals that are alike; -1 is any. With psf-hash any value above -1 rounds the components of normals to halves.
     #[arg(long, value_name = "COSINE", default_value_t = 0.95, allow_negative_numbers = true)]
     pub filter_normals: f32,
-    /// Largest difference between colours that are alike [default: any, since colours are taken out of the average].
+    /// Largest distance between albedos in RGB that are alike, 0 to 1.7 [default: any, since colours are taken out of the average].
     #[arg(long, value_name = "DIFFERENCE")]
     pub filter_albedo: Option<f32>,
     /// Average contributions as they are, colours included.
@@ -96,7 +96,7 @@ pub struct FilterSettings {
     /// Least cosine between directions to the camera that are alike [default: any].
     #[arg(long, value_name = "COSINE", allow_negative_numbers = true)]
     pub filter_view: Option<f32>,
-    /// Largest difference between the lengths of rays into the hemisphere that are alike [default: any].
+    /// Largest difference between the lengths of rays into the hemisphere that are alike, in units of the scene [default: any].
     #[arg(long, value_name = "LENGTH")]
     pub filter_hit_distance: Option<f32>,
     /// Largest difference in time of vertices that are alike: [`View::time`](crate::filtering::View::time). One image has one time.

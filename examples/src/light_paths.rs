@@ -19,7 +19,7 @@ pub enum PartitionName {
     Hard,
     /// Connections take the geometry term up to the threshold.
     Soft,
-    /// Connections take the share t / (t + G).
+    /// Connections take the share t / (t + G) of the geometry term G.
     Balance,
     /// Connections take edges longer than 1 / sqrt(t).
     Distance,
@@ -48,7 +48,8 @@ pub struct LightPathSettings {
     /// `inf` is allowed [default: 100, and inf for instant-radiosity].
     #[arg(long, allow_negative_numbers = true, value_parser = parse_threshold)]
     pub threshold: Option<Threshold>,
-    /// What of an edge connections take. What instant-radiosity leaves is lost, with robust-igi scattered rays take it.
+    /// What of the light between two vertices connections carry, by the geometry term G and the threshold t. What instant-radiosity leaves is lost,
+    /// with robust-igi scattered rays carry it.
     #[arg(long, value_enum, default_value_t)]
     pub partition: PartitionName,
     /// Light paths that a sample is connected to.

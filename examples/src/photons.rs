@@ -114,8 +114,8 @@ pub struct PhotonSettings {
     /// How photons at a distance count.
     #[arg(long, value_enum, default_value_t)]
     pub kernel: KernelName,
-    /// Global photons over caustic photons, of as many paths each (photon-map): 0.05 keeps a twentieth of the photons
-    /// that are not caustic.
+    /// Part of the photons that are not caustic which is kept (photon-map): with 0.05, and 20 times as many --photons, the
+    /// caustic map grows by 20 and the global map stays as large.
     #[arg(long, default_value_t = 1.0, value_parser = parse_share)]
     pub global_ratio: f64,
     /// How the part that the global map keeps is chosen.
@@ -131,7 +131,7 @@ pub struct PhotonSettings {
     /// Which photons are kept (photon-map).
     #[arg(long, value_enum, default_value_t)]
     pub deposition: DepositionName,
-    /// What importons guide of light paths, whatever photons are kept (photon-map).
+    /// Which choices of light paths prefer what importons ask for, whatever photons are kept (photon-map).
     #[arg(long, value_enum, default_value_t)]
     pub guide: GuideName,
     /// The share of emitters and directions that --guide chooses: less than 1, so that all light is found.
@@ -140,10 +140,10 @@ pub struct PhotonSettings {
     /// Paths from the sensor for --deposition importance and for --guide.
     #[arg(long, default_value_t = DEFAULT_IMPORTONS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
     pub importons: u64,
-    /// Radius in which importons are looked for.
+    /// Radius in which importons (what paths from the sensor leave, as paths from lights leave photons) are looked for: as --photon-radius.
     #[arg(long, default_value = "0.03", value_parser = parse_radius)]
     pub importon_radius: Radius,
-    /// The least probability to keep a photon: P2's epsilon, unbiased.
+    /// The least probability to keep a photon, epsilon of Keller and Wald 2000: unbiased if it is positive.
     #[arg(long, default_value_t = DEFAULT_FLOOR, value_parser = parse_share)]
     pub deposition_floor: f64,
     /// Keep nothing below that probability: biased.

@@ -57,11 +57,12 @@ pub struct ResamplingSettings {
     /// image then depends on the machine).
     #[arg(long, default_value = "16", value_parser = parse_candidates)]
     pub candidates: Candidates,
-    /// Samples of direct light per vertex, each with its shadow ray; a number from 1 that need not be an integer.
+    /// Samples of direct light per vertex, each with its shadow ray (for samples per pixel see --spp); a number from 1 that need not be
+    /// an integer. With --direct ris, and restir-direct.
     #[arg(long, default_value_t = 1.0, value_parser = parse_count)]
     pub samples: f32,
-    /// How the emitter of a candidate is chosen.
-    #[arg(long, value_enum, default_value_t = LightSelection::Power)]
+    /// How the emitter of a candidate is chosen: `uniform` or `power`.
+    #[arg(long, default_value = "power", value_parser = parse_candidate_lights)]
     pub candidate_lights: LightSelection,
     /// Shares of the candidates: emitters, the environment alone, what scattered rays hit (a ray each).
     #[arg(long, value_name = "LIGHTS,ENVIRONMENT,SCATTERING", default_value = "2,1,0", value_parser = parse_mix)]
@@ -185,6 +186,14 @@ fn parse_count(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(count) if (1.0..=1e6).contains(&count) => Ok(count),
         _ => Err("expected a number from 1 to 1000000".to_owned()),
+    }
+}
+
+fn parse_candidate_lights(text: &str) -> Result<LightSelection, String> {
+    match text {
+        "uniform" => Ok(LightSelection::Uniform),
+        "power" => Ok(LightSelection::Power),
+        _ => Err("candidates are chosen by 'uniform' or 'power'".to_owned()),
     }
 }
 

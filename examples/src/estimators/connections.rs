@@ -16,7 +16,7 @@ use vpl_gi::ConnectionTests;
 /// **Unbiased.** **Cost**: `N` shadow rays per eye path instead of one per connection.
 ///
 /// **Source.** Lafortune and Willems 1995 (*Reducing the number of shadow rays in bidirectional path tracing*); it is resampling with the
-/// connections as candidates (P3, section 2).
+/// connections as candidates (Talbot, Cline and Egbert 2005, section 2).
 #[derive(Clone, Debug)]
 pub struct ResampledConnections<P, R> {
     reservoirs: SmallVec<[Reservoir<(P, Ray)>; 4]>,

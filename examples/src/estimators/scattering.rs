@@ -41,10 +41,10 @@ impl ScatterSampling for OwnSampling {
 /// Where candidates for directions come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Directions {
-    /// Uniform over the hemisphere of `wo`: P3's figure 5. Misses what is transmitted.
+    /// Uniform over the hemisphere of `wo`: Talbot, Cline and Egbert's figure 5. Misses what is transmitted.
     Hemisphere,
     /// Half of them cosine-distributed around the normal on the side of `wo`, a quarter each in a lobe around the mirror direction and uniform
-    /// over the sphere: P3's "better default density", for any material.
+    /// over the sphere: Talbot, Cline and Egbert's "better default density", for any material.
     #[default]
     General,
 }
@@ -94,7 +94,7 @@ fn mirrored(wo: Vec3A) -> Vec3A {
 /// `f cos`.
 ///
 /// ```text
-/// f cos W,    W = 1/g(Y) * 1/M sum_j g(X_j)/p(X_j),    g = luminance(f cos)                                (P3, section 5.2)
+/// f cos W,    W = 1/g(Y) * 1/M sum_j g(X_j)/p(X_j),    g = luminance(f cos)                                (Talbot, Cline and Egbert 2005, section 5.2)
 /// ```
 ///
 /// **Symbols.** `X_j`: directions of density `p` by solid angle; `M`: their number, real, rounded at random.

@@ -122,7 +122,7 @@ fn candidates(context: &Context, setup: &Setup, interleaved: bool) -> Result<Vec
         let settings = robust(context, setup, interleaved, threshold)?;
         all.push(Candidate::new("robust-igi", STRATIFICATION.to_owned(), settings, Some(threshold)));
     }
-    // P0's own form.
+    // Kollig and Keller's own form.
     for &threshold in context.effort(&[100.0][..], thresholds(context)) {
         let mut settings = robust(context, setup, interleaved, threshold)?;
         settings.light_paths.geometry_alone = true;

@@ -11,7 +11,7 @@ use crate::samplers::SamplerName;
 
 /// Lists what can be named on the command line.
 pub(super) fn run() -> Result<(), Failure> {
-    let mut text = String::from("scenes (or a Mitsuba 3 XML file)\n");
+    let mut text = String::from("scenes (or a file: Mitsuba 3 .xml, glTF 2.0 .gltf and .glb, LuxCore .scn)\n");
     for builtin in Builtin::ALL {
         text += &format!("  {:<14} {}\n", builtin.name, builtin.about);
     }

@@ -10,8 +10,11 @@ use scene_core::{SceneDescription, gltf, luxcore, mitsuba};
 #[non_exhaustive]
 pub enum LoadError {
     /// Neither a builtin name nor a file.
-    #[error("'{0}' is neither a builtin scene (see 'lichtwerk list') nor a file")]
-    Unknown(String),
+    #[error("'{name}' is neither a builtin scene (see 'lichtwerk list') nor a file{}", hint(.name))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+    },
     /// A file of another kind.
     #[error(
         "{0}: unknown kind of scene file; Mitsuba 3 XML (.xml), LuxCore properties (.scn) and glTF 2.0 (.gltf, .glb) can be read"
@@ -50,8 +53,21 @@ pub fn load_description(scene: &str, definitions: &[(String, String)]) -> Result
         Some("scn") => Ok(luxcore::load(path)?),
         Some("gltf" | "glb") => Ok(gltf::load(path)?),
         _ if path.exists() => Err(LoadError::Kind(scene.to_owned())),
-        _ => Err(LoadError::Unknown(scene.to_owned())),
+        _ => Err(LoadError::Unknown { name: scene.to_owned() }),
     }
+}
+
+/// The builtin scene that was probably meant.
+fn hint(name: &str) -> String {
+    let name = name.to_ascii_lowercase();
+    let likeness = |builtin: &Builtin| match builtin.name.starts_with(&name) && !name.is_empty() {
+        true => 1.0,
+        false => strsim::jaro_winkler(&name, builtin.name),
+    };
+    let best = Builtin::ALL.iter().map(|builtin| (likeness(builtin), builtin.name)).max_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(likeness, _)| *likeness > 0.8)
+        .map(|(_, name)| format!("; did you mean '{name}'?"))
+        .unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -61,7 +77,12 @@ mod tests {
     #[test]
     fn what_is_no_scene_is_named() {
         let message = |scene: &str| load_description(scene, &[]).unwrap_err().to_string();
-        assert!(message("nowhere").contains("'nowhere' is neither"));
+        assert!(message("nowhere").ends_with("nor a file"));
+        for (typo, meant) in
+            [("ofice", "office"), ("Office", "office"), ("cornell", "cornell-box"), ("rooms-100", "rooms-1000")]
+        {
+            assert!(message(typo).ends_with(&format!("did you mean '{meant}'?")), "{}", message(typo));
+        }
         assert!(message("nowhere.xml").contains("nowhere.xml"));
         assert!(message("nowhere.scn").contains("cannot read nowhere.scn"));
         assert!(load_description("nowhere.scn", &[("a".into(), "b".into())]).unwrap_err().to_string().contains("(-D)"));

@@ -20,7 +20,7 @@ use crate::light_photons::{ImportanceName, LightPhotonSettings, LightPhotonsErro
 /// L = sum over rays  f cos L_e V / (e_j p_j)        e_j = E(number of rays to light j)
 /// ```
 /// **Symbols.** `p_j`: density of the ray on light `j`, by solid angle (1 for Dirac lights). `e_j`: see
-/// [`LightSelection`]. The weights of lights in its table are their powers where P2 has emission areas, so that lights without an area and the
+/// [`LightSelection`]. The weights of lights in its table are their powers where Keller and Wald 2000 has emission areas, so that lights without an area and the
 /// environment take part.
 ///
 /// **Photons** are traced once, before the first pixel, to the first surface: half of them start at lights in proportion to power, half in equal
@@ -32,7 +32,7 @@ use crate::light_photons::{ImportanceName, LightPhotonSettings, LightPhotonsErro
 /// **Cost.** A query for photons and at most `S_con + S_other` shadow rays; with [`ImportanceName::Contribution`] an evaluation per contributing light.
 /// Nothing at a vertex depends on the number of lights but by its logarithm. Memory: 36 to 52 bytes per photon, and 4 bytes per light and thread.
 ///
-/// **Source.** P2, section 3.
+/// **Source.** Keller and Wald 2000, section 3.
 #[derive(Clone, Debug)]
 pub struct PhotonLights {
     map: PrimaryPhotonMap,

@@ -19,7 +19,7 @@ use crate::render::PassContext;
 /// Paths from the sensor, which leave importons where eye paths ask for photons.
 ///
 /// Where eye paths look at the maps directly, these are the first vertices that scatter other than sharply; with final
-/// gathering, the vertices after them, too. (P2 and Peter and Pietrek follow importons farther: photons are then kept
+/// gathering, the vertices after them, too. (Keller and Wald 2000 and Peter and Pietrek follow importons farther: photons are then kept
 /// where nobody asks for them.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImportonTracing {

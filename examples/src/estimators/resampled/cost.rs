@@ -1,4 +1,4 @@
-//! What candidates and samples cost here: the times of P3's section 5.1.
+//! What candidates and samples cost here: the times of Talbot, Cline and Egbert's section 5.1.
 
 use std::hint::black_box;
 

@@ -24,7 +24,7 @@ pub use target::{LightTarget, TargetName};
 /// only that one gets a shadow ray; `N` times.
 ///
 /// ```text
-/// L = 1/N sum_i f cos L_e V (Y_i) W_i,    W_i = 1/g(Y_i) * 1/M sum_j g(X_ij)/p(X_ij),    p = a_L p_L + a_E p_E + a_S p_S      (P3, equation 1)
+/// L = 1/N sum_i f cos L_e V (Y_i) W_i,    W_i = 1/g(Y_i) * 1/M sum_j g(X_ij)/p(X_ij),    p = a_L p_L + a_E p_E + a_S p_S      (Talbot, Cline and Egbert 2005, equation 1)
 /// ```
 /// **Symbols.** `p_L`: an emitter by `choice` and a point on it; `p_E`: a direction to the environment; `p_S`: a direction by the scattering
 /// function, traced to what it hits; `a`: the [`SourceMix`]. All densities by solid angle; Dirac emitters count by probability. `g`: the
@@ -35,7 +35,7 @@ pub use target::{LightTarget, TargetName};
 /// **Cost.** Per sample one shadow ray, none if scattering found the candidate; per candidate of `p_S` one closest hit; with
 /// [`TargetName::GeometryVisibility`] a shadow ray per candidate.
 ///
-/// **Source.** P3, section 5.1.
+/// **Source.** Talbot, Cline and Egbert 2005, section 5.1.
 #[derive(Clone, Copy, Debug)]
 pub struct ResampledDirect<'a, C> {
     /// `M` and `N`.

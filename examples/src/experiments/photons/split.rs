@@ -202,7 +202,7 @@ fn projection(context: &Context, setup: &Setup, report: &mut Report) -> Result<(
     ];
     report.rows.push(Row::new(name, "projection-map", params));
     let found = Ratio { value: projected.mean() / plain.mean(), ..interval(&projected, &plain) };
-    // P2: a projection map finds no caustics of indirect light.
+    // Keller and Wald 2000: a projection map finds no caustics of indirect light.
     report.claims.push(match name {
         "caustic-room" => at_most("caustic-room-share-of-caustic-flux-that-a-projection-map-finds", found, 0.1),
         _ => at_least(format!("{name}-share-of-caustic-flux-that-a-projection-map-finds"), found, 0.5),
