@@ -11,6 +11,7 @@ mod distributions;
 mod domain;
 mod heuristic;
 mod kolmogorov_smirnov;
+pub mod laws;
 mod mean;
 mod moments;
 mod multiple;

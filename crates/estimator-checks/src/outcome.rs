@@ -182,6 +182,12 @@ impl Report {
     }
 }
 
+impl From<Outcome> for Report {
+    fn from(outcome: Outcome) -> Self {
+        Self { outcomes: vec![outcome] }
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, outcome) in self.outcomes.iter().enumerate() {

@@ -226,6 +226,15 @@ impl Check {
         Uniforms::new(self.seed)
     }
 
+    /// As [`split`](Self::split), for a number of parts that is known at run time only.
+    #[cfg(feature = "scene-core")]
+    pub(crate) fn parts(&self, names: impl ExactSizeIterator<Item = String>) -> Vec<Check> {
+        let alpha = self.alpha / names.len().max(1) as f64;
+        let part =
+            |name: String| Check { test: format!("{}: {name}", self.test), alpha, seed: mix(self.seed ^ seed(&name)) };
+        names.map(part).collect()
+    }
+
     /// Splits the check into `N` that share its level, each with a seed of its own.
     ///
     /// ```
