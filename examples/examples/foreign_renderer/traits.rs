@@ -25,7 +25,7 @@ pub fn virtual_lights(scene: &Scene, (o, d): (V, V), seed: u64, index: u64) -> R
     Ok(robust.radiance(scene, &lights, Ray::new(o.into(), d.into()), &mut numbers(0)))
 }
 
-struct OneLamp;
+pub struct OneLamp;
 impl EmitterChoice for OneLamp {
     fn choose(&self, _: Option<&SurfacePoint>, _: f32) -> Option<ChosenEmitter> {
         Some(ChosenEmitter { id: EmitterId(0), probability: 1.0 })
