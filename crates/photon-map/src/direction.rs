@@ -36,6 +36,16 @@ impl PackedDirection {
         Some(Self(code(u) | code(v) << 16))
     }
 
+    /// The 32 bits.
+    pub(crate) const fn code(self) -> u32 {
+        self.0
+    }
+
+    /// The direction of 32 bits; `None` if [`pack`](Self::pack) never gives them.
+    pub(crate) const fn from_code(code: u32) -> Option<Self> {
+        if code & 0xffff == 0 || code >> 16 == 0 { None } else { Some(Self(code)) }
+    }
+
     /// The direction, of unit length.
     #[inline]
     pub(crate) fn unpack(self) -> [f32; 3] {

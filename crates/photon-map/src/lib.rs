@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+mod bytes;
 mod caustics;
 pub mod check;
 mod density;
@@ -20,6 +21,7 @@ mod projection;
 mod sphere;
 mod vector;
 
+pub use bytes::{FluxWords, PhotonBytesError};
 pub use caustics::{CausticRule, CausticRuleError, LastBounce};
 pub use density::{DensityEstimation, Estimate, Gather, GatherError, GatherPoint, MapError, PhotonMap, Scratch};
 pub use deposition::{Both, Bound, BoundError, Deposition, DepositionExt, KeepAll};

@@ -1,8 +1,8 @@
 //! Photons, and how they are stored.
 
-use crate::Flux;
 use crate::direction::PackedDirection;
 use crate::vector::is_finite;
+use crate::{Flux, FluxWords};
 
 /// A photon: flux that arrived at a point of a surface.
 ///
@@ -151,6 +151,28 @@ impl<F: Flux> PackedPhoton<F> {
     #[inline]
     pub const fn flux(&self) -> F {
         self.flux
+    }
+}
+
+impl<F: FluxWords> PackedPhoton<F> {
+    /// Words of 32 bits, without those of the flux.
+    pub(crate) const OTHER_WORDS: usize = 5;
+
+    /// All parts, bit for bit.
+    pub(crate) fn words(&self, mut give: impl FnMut(u32)) {
+        self.position.iter().for_each(|coordinate| give(coordinate.to_bits()));
+        give(self.wi.code());
+        give(self.tag);
+        self.flux.words(give);
+    }
+
+    /// The photon of such words, if it is one.
+    pub(crate) fn from_words(mut take: impl FnMut() -> u32) -> Option<Self> {
+        let position = std::array::from_fn(|_| f32::from_bits(take()));
+        let wi = PackedDirection::from_code(take());
+        let tag = take();
+        let flux = F::from_words(take);
+        (is_finite(position) && flux.is_finite()).then_some(Self { position, wi: wi?, flux, tag })
     }
 }
 

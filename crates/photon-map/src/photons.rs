@@ -93,6 +93,10 @@ impl<F: Flux> Photons<F> {
         &self.photons
     }
 
+    pub(crate) const fn from_parts(photons: Vec<PackedPhoton<F>>, paths: u64, refused: u64) -> Self {
+        Self { photons, paths, refused }
+    }
+
     pub(crate) fn into_vec(self) -> Vec<PackedPhoton<F>> {
         self.photons
     }
