@@ -2,6 +2,7 @@
 //!
 //! - [`estimators`]: what adds up paths, written against `scene-core`'s traits alone.
 //! - [`render`]: the loop over pixels, passes and threads.
+//! - [`distributed`]: processes that render together.
 //! - [`choices`]: heuristics and light selection by name.
 //! - [`filtering`]: path space filtering of estimators; [`filters`]: filters by name.
 //! - [`light_paths`]: light paths by name.
@@ -16,6 +17,7 @@
 //! - [`program`]: the subcommands of `lichtwerk`.
 
 pub mod choices;
+pub mod distributed;
 pub mod estimators;
 pub mod experiments;
 pub mod filtering;
