@@ -116,6 +116,9 @@ pub enum LightPhotonsError {
     /// The shadow rays.
     #[error(transparent)]
     Rays(#[from] SelectionError),
+    /// The other processes.
+    #[error(transparent)]
+    Ranks(#[from] crate::distributed::RanksError),
 }
 
 fn parse_nearest(text: &str) -> Result<Nearest, String> {

@@ -133,6 +133,9 @@ pub enum RenderError {
     /// Settings of photon maps.
     #[error(transparent)]
     Photons(#[from] crate::photons::PhotonError),
+    /// The other processes.
+    #[error(transparent)]
+    Ranks(#[from] crate::distributed::RanksError),
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

@@ -9,8 +9,9 @@ use photon_map::{ContributingLights, Gather, LightSelection, LightTable, Primary
 use qmc_sampling::{Sampler, SamplerFamily};
 use scene_core::{DirectSample, Emitter, RayCounts, Scene, Spectrum, TransportMode, Vertex};
 
-use self::tracing::{powers, starts, trace_all, usual_distance};
+use self::tracing::{powers, starts, trace_share, usual_distance};
 use super::direct::DirectLight;
+use crate::distributed::Ranks;
 use crate::light_photons::{ImportanceName, LightPhotonSettings, LightPhotonsError};
 
 /// Direct light at a vertex by a fixed number of shadow rays, however many lights there are: the lights `C` that primary photons around the
@@ -63,6 +64,20 @@ impl PhotonLights {
         samplers: &F,
         settings: &LightPhotonSettings,
     ) -> Result<Option<Self>, LightPhotonsError> {
+        Self::trace_by(scene, samplers, settings, &Ranks::default())
+    }
+
+    /// [`trace`](Self::trace) together with all other ranks: each traces a part of the photons and has all of them, the same
+    /// ones as one process; [`rays`](Self::rays) are those of this rank.
+    ///
+    /// # Errors
+    /// Settings out of range, or a rank has failed.
+    pub fn trace_by<S: Scene + Sync, F: SamplerFamily>(
+        scene: &S,
+        samplers: &F,
+        settings: &LightPhotonSettings,
+        ranks: &Ranks,
+    ) -> Result<Option<Self>, LightPhotonsError> {
         let start = Instant::now();
         if scene.emitters().is_empty() {
             return Ok(None);
@@ -70,7 +85,11 @@ impl PhotonLights {
         let powers = powers(scene);
         let starts = starts(&powers)?;
         let count = settings.photons_for(powers.len());
-        let (primary, positions, rays) = trace_all(scene, samplers, &starts, count);
+        let share = ranks.share(u64::from(count));
+        let (own, rays) = trace_share(scene, samplers, &starts, count, share.start as u32..share.end as u32);
+        let arrivals = ranks.gather(own)?;
+        let (primary, positions) = (arrivals.photons(), arrivals.positions());
+        drop(arrivals);
         let usual = match settings.light_radius {
             Some(radius) => radius,
             None => usual_distance(&positions, settings.nearest_or_default(), scene.bounding_sphere().1),

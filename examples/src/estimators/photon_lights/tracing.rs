@@ -1,10 +1,13 @@
 //! Primary photons: from lights to the first surface.
 
+use std::ops::Range;
+
 use photon_map::{CausticRule, LastBounce, LightTable, LightTableError, Photon, PrimaryPhotons};
 use qmc_sampling::{Sampler, SamplerFamily};
 use rayon::prelude::*;
 use scene_core::{Counting, Emitter, RayCounts, Scene, Spectrum, Vertex};
 
+use crate::distributed::Portable;
 use crate::render::LIGHT_STREAM;
 
 /// Photons that one task traces.
@@ -30,42 +33,91 @@ pub(super) fn starts(powers: &[f64]) -> Result<LightTable, LightTableError> {
     LightTable::guided(powers, &vec![1.0; powers.len()], 1.0 - BY_POWER)
 }
 
-/// All primary photons in order, their positions, and the rays that they took.
-pub(super) fn trace_all<S: Scene + Sync, F: SamplerFamily>(
+/// Where primary photons arrived, and of which light they are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Arrivals(Vec<([f32; 3], u32)>);
+
+/// Of `count` photons those with the given numbers that arrive, in order, and the rays that they took.
+pub(super) fn trace_share<S: Scene + Sync, F: SamplerFamily>(
     scene: &S,
     samplers: &F,
     starts: &LightTable,
     count: u32,
-) -> (PrimaryPhotons, Vec<[f32; 3]>, RayCounts) {
+    share: Range<u32>,
+) -> (Arrivals, RayCounts) {
     let task = |first: u32| {
         let scene = Counting::new(scene);
-        let photons: Vec<Photon<f32>> = (first..count.min(first.saturating_add(PHOTONS_PER_TASK)))
+        let arrivals: Vec<_> = (first..share.end.min(first.saturating_add(PHOTONS_PER_TASK)))
             .filter_map(|path| {
                 // The lights are stratified, whatever the sampler.
                 let (light, _) = starts.sample((f64::from(path) + 0.5) / f64::from(count));
                 trace(&scene, light, &mut samplers.sampler(LIGHT_STREAM, u64::from(path)))
             })
             .collect();
-        (photons, scene.counts())
+        (arrivals, scene.counts())
     };
-    let firsts: Vec<u32> = (0..count).step_by(PHOTONS_PER_TASK as usize).collect();
+    let firsts: Vec<u32> = share.clone().step_by(PHOTONS_PER_TASK as usize).collect();
     let tasks: Vec<_> = firsts.into_par_iter().map(task).collect();
-    let (mut primary, mut positions, mut rays) = (PrimaryPhotons::new(), Vec::new(), RayCounts::default());
-    for (photons, counts) in &tasks {
-        photons.iter().for_each(|photon| primary.offer(photon));
-        positions.extend(photons.iter().map(|photon| photon.position));
-        rays += *counts;
+    let (mut all, mut rays) = (Vec::new(), RayCounts::default());
+    for (arrivals, counts) in tasks {
+        all.extend(arrivals);
+        rays += counts;
     }
-    (primary, positions, rays)
+    (Arrivals(all), rays)
 }
 
-/// A photon from `light`, where it first meets a surface; nothing if one cannot search for light there.
-fn trace<S: Scene>(scene: &S, light: u32, sampler: &mut impl Sampler) -> Option<Photon<f32>> {
+impl Arrivals {
+    /// The photons in order.
+    pub(super) fn photons(&self) -> PrimaryPhotons {
+        let mut primary = PrimaryPhotons::new();
+        for &(position, light) in &self.0 {
+            // Neither direction nor flux is asked for.
+            let photon = Photon::new(position, [0.0, 0.0, 1.0], 1.0_f32).from_light(light);
+            primary.offer(&CausticRule::SPECULAR.label(photon, LastBounce::Emission));
+        }
+        primary
+    }
+
+    /// Their positions.
+    pub(super) fn positions(&self) -> Vec<[f32; 3]> {
+        self.0.iter().map(|&(position, _)| position).collect()
+    }
+}
+
+impl Portable for Arrivals {
+    const NAME: &'static str = "photons from lights";
+
+    fn to_bytes(&self) -> Vec<u8> {
+        let words = |&([x, y, z], light): &([f32; 3], u32)| [x.to_bits(), y.to_bits(), z.to_bits(), light];
+        self.0.iter().flat_map(words).flat_map(u32::to_le_bytes).collect()
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+        let (photons, rest) = bytes.as_chunks::<16>();
+        if !rest.is_empty() {
+            return Err(format!("{} bytes too many", rest.len()));
+        }
+        let photon = |bytes: &[u8; 16]| {
+            let [x, y, z, light] = std::array::from_fn(|k| {
+                u32::from_le_bytes([bytes[4 * k], bytes[4 * k + 1], bytes[4 * k + 2], bytes[4 * k + 3]])
+            });
+            ([x, y, z].map(f32::from_bits), light)
+        };
+        Ok(Self(photons.iter().map(photon).collect()))
+    }
+
+    fn join(&mut self, behind: Self) -> Result<(), String> {
+        self.0.extend(behind.0);
+        Ok(())
+    }
+}
+
+/// Where a photon from `light` first meets a surface; nothing if one cannot search for light there.
+fn trace<S: Scene>(scene: &S, light: u32, sampler: &mut impl Sampler) -> Option<([f32; 3], u32)> {
     let emission = scene.emitters()[light as usize].sample_emission(sampler.next_2d(), sampler.next_2d())?;
     let vertex = scene.intersect(&emission.point.ray_along(emission.direction))?;
     let is_stored = vertex.is_connectible() && vertex.point().position.is_finite();
-    let photon = Photon::new(vertex.point().position.to_array(), (-emission.direction).to_array(), 1.0);
-    is_stored.then(|| CausticRule::SPECULAR.label(photon.from_light(light), LastBounce::Emission))
+    is_stored.then(|| (vertex.point().position.to_array(), light))
 }
 
 /// The median over some photons of the distance to the `nearest`-th around them; the scene's `radius` if there are not so many.
@@ -93,6 +145,18 @@ pub(super) fn usual_distance(positions: &[[f32; 3]], nearest: usize, radius: f32
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arrivals_come_back_in_order() {
+        let mut all = Arrivals(vec![([0.1, -0.0, 1e-30], 7), ([1.0, 2.0, 3.0], u32::MAX)]);
+        let bytes = all.to_bytes();
+        assert_eq!(Arrivals::from_bytes(&bytes).as_ref(), Ok(&all));
+        assert!(Arrivals::from_bytes(&bytes[1..]).is_err());
+        all.join(Arrivals(vec![([4.0; 3], 1)])).unwrap();
+        assert_eq!(all.positions()[2], [4.0; 3]);
+        // The second one's light is out of range for a photon, but primary photons keep whatever they are told.
+        assert_eq!(all.photons().len(), 3);
+    }
 
     #[test]
     fn the_usual_distance_is_that_of_the_nearest() {

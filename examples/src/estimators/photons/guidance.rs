@@ -13,6 +13,7 @@ use scene_core::{
 use super::ImportonTracing;
 use super::importons::{Purpose, sorted};
 use super::maps::gather_point;
+use crate::distributed::{Ranks, RanksError};
 use crate::render::PassContext;
 
 /// How light paths begin and go on.
@@ -146,13 +147,17 @@ const NEAREST: usize = 64;
 const CELLS: [u32; 2] = [8, 4];
 
 impl GuidanceTracing {
-    /// Traces importons. `choice`: which emitters light paths begin at without guidance.
+    /// Traces importons; the rays are those of this rank. `choice`: which emitters light paths begin at without guidance.
+    ///
+    /// # Errors
+    /// If a rank has failed.
     pub fn trace<S: Scene + Sync, F: SamplerFamily>(
         &self,
         context: &PassContext<'_, S, F>,
         choice: &impl EmitterChoice,
-    ) -> (ImportonGuidance, RayCounts) {
-        let (left, rays) = self.importons.paths(context, Purpose::Guidance, 0, self.importons.paths.max(1));
+        ranks: &Ranks,
+    ) -> Result<(ImportonGuidance, RayCounts), RanksError> {
+        let (left, rays) = self.importons.paths(context, ranks, Purpose::Guidance, 0, self.importons.paths.max(1))?;
         let emitters = self.emission.then(|| {
             let mut importance = vec![0.0; context.scene.emitters().len()];
             for importon in left.emitters.as_slice() {
@@ -164,7 +169,7 @@ impl GuidanceTracing {
             GuidedEmitters { map: self.sorted(left.emitters), table }
         });
         let surfaces = self.scattering.then(|| self.sorted(left.surfaces));
-        (ImportonGuidance { guide: self.guide, surfaces, emitters }, rays)
+        Ok((ImportonGuidance { guide: self.guide, surfaces, emitters }, rays))
     }
 
     fn sorted(&self, importons: Photons<f32>) -> ImportanceMap {

@@ -3,8 +3,8 @@
 use core::ops::ControlFlow;
 
 use photon_map::{
-    Bound, BoundError, DensityEstimation, Deposition, ImportanceMap, ImportanceScale, ImportonDeposition, Photon,
-    PhotonMap, Photons,
+    Bound, DensityEstimation, Deposition, ImportanceMap, ImportanceScale, ImportonDeposition, Photon, PhotonMap,
+    Photons,
 };
 use qmc_sampling::{Sampler, SamplerFamily};
 use rayon::prelude::*;
@@ -14,6 +14,7 @@ use scene_core::{
 };
 
 use super::Sharpness;
+use crate::distributed::{Ranks, RanksError};
 use crate::render::PassContext;
 
 /// Paths from the sensor, which leave importons where eye paths ask for photons.
@@ -71,7 +72,7 @@ pub(super) struct Importons {
 }
 
 impl Importons {
-    fn append(&mut self, other: Self) {
+    pub(super) fn append(&mut self, other: Self) {
         self.surfaces.append(other.surfaces);
         self.emitters.append(other.emitters);
     }
@@ -92,35 +93,38 @@ const PATHS_PER_TASK: u64 = 1024;
 const MAX_BOUNCES: u32 = 64;
 
 impl ImportonTracing {
-    /// Traces importons, and finds the scale.
+    /// Traces importons, and finds the scale; the rays are those of this rank. With a bound that is out of range, every
+    /// photon is kept.
     ///
     /// # Errors
-    /// If the bound is out of range.
+    /// If a rank has failed.
     pub fn trace<S: Scene + Sync, F: SamplerFamily>(
         &self,
         context: &PassContext<'_, S, F>,
-    ) -> Result<(Importance, RayCounts), BoundError> {
-        let bound = self.bound.validate()?;
+        ranks: &Ranks,
+    ) -> Result<(Importance, RayCounts), RanksError> {
         let paths = self.paths.max(1);
-        let (importons, mut rays) = self.paths(context, Purpose::Deposition, 0, paths);
+        let (importons, mut rays) = self.paths(context, ranks, Purpose::Deposition, 0, paths)?;
         let map = sorted(importons.surfaces, self.estimation, self.estimation.gather.max_radius());
-        let (tests, counts) = self.paths(context, Purpose::Deposition, paths, self.test_paths);
+        let (tests, counts) = self.paths(context, ranks, Purpose::Deposition, paths, self.test_paths)?;
         rays += counts;
         let tests = tests.surfaces;
         let queries: Vec<f64> = tests.as_slice().par_iter().map(|test| map.at(test.position())).collect();
         let scale = ImportanceScale::from_queries(queries, self.quantile).ok();
-        Ok((Importance { map, scale, bound }, rays))
+        Ok((Importance { map, scale, bound: self.bound }, rays))
     }
 
-    /// The importons of so many paths, from number `first` on.
+    /// The importons of so many paths, from number `first` on: each rank traces its part of them, and has all.
     pub(super) fn paths<S: Scene + Sync, F: SamplerFamily>(
         &self,
         context: &PassContext<'_, S, F>,
+        ranks: &Ranks,
         purpose: Purpose,
         first: u64,
         count: u64,
-    ) -> (Importons, RayCounts) {
-        let end = first + count;
+    ) -> Result<(Importons, RayCounts), RanksError> {
+        let share = ranks.share(count);
+        let (first, end) = (first + share.start, first + share.end);
         let task = |start: u64| {
             let scene = Counting::new(context.scene);
             let mut importons = Importons::default();
@@ -134,12 +138,12 @@ impl ImportonTracing {
         };
         let starts: Vec<u64> = (first..end).step_by(PATHS_PER_TASK as usize).collect();
         let tasks: Vec<_> = starts.into_par_iter().map(task).collect();
-        let mut all = (Importons::default(), RayCounts::default());
+        let (mut own, mut rays) = (Importons::default(), RayCounts::default());
         for (importons, counts) in tasks {
-            all.0.append(importons);
-            all.1 += counts;
+            own.append(importons);
+            rays += counts;
         }
-        all
+        Ok((ranks.gather(own)?, rays))
     }
 
     fn path<S: Scene>(&self, scene: &S, mut sampler: impl Sampler, purpose: Purpose, importons: &mut Importons) {

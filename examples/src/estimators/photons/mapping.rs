@@ -9,6 +9,7 @@ use scene_core::film::{Film, FilmError};
 use scene_core::{EmitterChoice, RayCounts, Scene};
 
 use super::{GuidanceTracing, ImportonTracing, Maps, PhotonEye, PhotonTracing, PhotonView, Storing};
+use crate::distributed::{Ranks, RanksError};
 use crate::estimators::DirectLight;
 use crate::render::{CameraPass, PassContext, PassCounts};
 
@@ -17,7 +18,8 @@ use crate::render::{CameraPass, PassContext, PassCounts};
 /// **Biased**, see [`PhotonEye`]; more samples per pixel do not help against it, nor against the noise of the maps.
 /// [`ProgressivePhotons`](super::ProgressivePhotons) is consistent.
 ///
-/// **Cost.** The light paths, once; their rays count as rays of the first pass.
+/// **Cost.** The light paths, once; their rays count as rays of the first pass. Several ranks trace a part of them each, see
+/// [`prepare`](Self::prepare).
 #[derive(Debug)]
 pub struct PhotonMapping<D, C> {
     /// The eye paths.
@@ -45,46 +47,67 @@ impl<D: DirectLight, C: EmitterChoice + Clone + Sync> PhotonMapping<D, C> {
     pub fn maps<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (&Maps, RayCounts) {
         let mut rays = RayCounts::default();
         let maps = self.maps.get_or_init(|| {
-            let (maps, counts) = self.make(context);
+            let made = self.make(context, &Ranks::default());
+            let (maps, counts) = made.expect("one process waits for no other");
             rays = counts;
             maps
         });
         (maps, rays)
     }
 
-    /// Makes the maps.
-    pub fn make<S: Scene + Sync, F: SamplerFamily>(&self, context: &PassContext<'_, S, F>) -> (Maps, RayCounts) {
-        // A bound that is out of range is refused with the settings; here it would mean that every photon is kept.
-        match self.importons.and_then(|importons| importons.trace(context).ok()) {
-            Some((deposition, mut rays)) => {
-                let (photons, counts) = self.photons(context, deposition);
+    /// Makes the maps together with all other ranks: each traces a contiguous part of the light paths and of the importons,
+    /// and has all photons in the end, in the order of the paths. So the maps are those of one process, bit for bit. Returns
+    /// the rays of this rank.
+    ///
+    /// # Errors
+    /// If a rank has failed.
+    pub fn prepare<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'_, S, F>,
+        ranks: &Ranks,
+    ) -> Result<RayCounts, RanksError> {
+        let (maps, rays) = self.make(context, ranks)?;
+        // Maps that are there already are the same.
+        let _ = self.maps.set(maps);
+        Ok(rays)
+    }
+
+    fn make<S: Scene + Sync, F: SamplerFamily>(
+        &self,
+        context: &PassContext<'_, S, F>,
+        ranks: &Ranks,
+    ) -> Result<(Maps, RayCounts), RanksError> {
+        let (photons, rays) = match &self.importons {
+            Some(importons) => {
+                let (deposition, mut rays) = importons.trace(context, ranks)?;
+                let (photons, counts) = self.photons(context, deposition, ranks)?;
                 rays += counts;
-                (self.sorted(photons), rays)
+                (photons, rays)
             }
-            None => {
-                let (photons, rays) = self.photons(context, KeepAll);
-                (self.sorted(photons), rays)
-            }
-        }
+            None => self.photons(context, KeepAll, ranks)?,
+        };
+        Ok((self.sorted(photons), rays))
     }
 
     fn photons<S: Scene + Sync, F: SamplerFamily>(
         &self,
         context: &PassContext<'_, S, F>,
         deposition: impl Deposition + Sync,
-    ) -> (PhotonMaps<[f32; 3]>, RayCounts) {
+        ranks: &Ranks,
+    ) -> Result<(PhotonMaps<[f32; 3]>, RayCounts), RanksError> {
         let storing = Storing { partition: self.partition, deposition, primary: self.eye.gather > 0, global: true };
-        let (mut photons, paths) = (PhotonMaps::new(), 0..self.paths);
+        let (mut own, paths) = (PhotonMaps::new(), ranks.share(self.paths));
         let rays = match self.guidance {
             Some(guidance) => {
-                let (guidance, mut rays) = guidance.trace(context, &self.light.choice);
-                rays += storing.trace(context, &self.light.clone().guided(guidance), 0, paths, &mut photons);
+                let (guidance, mut rays) = guidance.trace(context, &self.light.choice, ranks)?;
+                rays += storing.trace(context, &self.light.clone().guided(guidance), 0, paths, &mut own);
                 rays
             }
-            None => storing.trace(context, &self.light, 0, paths, &mut photons),
+            None => storing.trace(context, &self.light, 0, paths, &mut own),
         };
+        let mut photons = ranks.gather(own)?;
         photons.add_paths(&self.partition, self.paths);
-        (photons, rays)
+        Ok((photons, rays))
     }
 
     /// Maps of photons whose paths were counted.

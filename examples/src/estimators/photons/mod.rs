@@ -17,6 +17,7 @@ mod guidance;
 mod importons;
 mod mapping;
 mod maps;
+mod portable;
 mod progressive;
 mod sharpness;
 mod tracing;

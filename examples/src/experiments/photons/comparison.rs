@@ -7,6 +7,7 @@ use scene_core::PowerChoice;
 use super::places::{Look, Places};
 use super::top_view::top_view;
 use super::{Traced, Tracer, limits, storing};
+use crate::distributed::Ranks;
 use crate::estimators::{Importance, ImportonGuidance, ImportonTracing, PhotonTracing};
 use crate::experiments::{Context, Report, Row, Setup};
 use crate::photons::{GuideName, PhotonSettings};
@@ -130,13 +131,14 @@ impl Comparison<'_> {
     /// Where photons are kept.
     fn importance(&self, tracer: &Tracer<'_>, bound: Bound) -> Result<Importance, Failure> {
         let importons = self.settings.importon_tracing(&self.setup.scene, limits())?;
-        Ok(ImportonTracing { bound, ..importons }.trace(&tracer.context())?.0)
+        Ok(ImportonTracing { bound, ..importons }.trace(&tracer.context(), &Ranks::default())?.0)
     }
 
     /// Light paths that importons guide, as the settings say.
     fn guided(&self, tracer: &Tracer<'_>) -> Result<PhotonTracing<PowerChoice, ImportonGuidance>, Failure> {
         let guidance = self.settings.guidance(&self.setup.scene, limits())?.ok_or("nothing is guided")?;
-        Ok(tracer.light.clone().guided(guidance.trace(&tracer.context(), &tracer.light.choice).0))
+        let (guidance, _) = guidance.trace(&tracer.context(), &tracer.light.choice, &Ranks::default())?;
+        Ok(tracer.light.clone().guided(guidance))
     }
 
     /// Takes in a map.
