@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-use command::{fails, lichtwerk, names, run, succeeds, text};
+use command::{assert_same_image, fails, image, lichtwerk, names, run, succeeds, text};
 use lichtwerk::output::Checkpoint;
 use scene_core::film::LayeredImage;
 use tempfile::TempDir;
@@ -555,21 +555,6 @@ fn killed_at_any_time_leaves_the_old_file_or_the_new_one() {
     println!("{old} old, {new} new files");
 }
 
-fn image(folder: &Path, name: &str) -> LayeredImage {
-    LayeredImage::read_exr(&folder.join(name)).unwrap()
-}
-
-/// Same channels, bit for bit, and the same settings.
-fn assert_same_image(folder: &Path, one: &str, other: &str) {
-    let (a, b) = (image(folder, one), image(folder, other));
-    assert_eq!(a.channels().count(), b.channels().count(), "{one}, {other}");
-    for (name, values) in a.channels() {
-        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-        assert!(bits(values) == bits(b.channel(name).unwrap()), "{one} and {other} differ in {name}");
-    }
-    assert_eq!(a.attributes().collect::<Vec<_>>(), b.attributes().collect::<Vec<_>>(), "{one}, {other}");
-}
-
 /// Killed without warning, and started again by the same command.
 #[cfg(unix)]
 #[test]
@@ -645,6 +630,21 @@ fn shards_are_merged_to_the_whole_bit_for_bit() {
         let gap = run(folder.path(), &["merge", "1.part", "3.part", "--out", "a.exr"]);
         assert!(text(&gap.stderr).contains("warning: of 12 samples"), "{}", text(&gap.stderr));
     }
+}
+
+/// Without the feature `mpi`, processes that a launcher starts would all render the same into the same files.
+#[cfg(not(feature = "mpi"))]
+#[test]
+fn processes_that_cannot_share_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let started = |rank: &str, more: &[&str]| {
+        let mut command = lichtwerk(folder.path(), &tiny(more));
+        command.envs([("OMPI_COMM_WORLD_SIZE", "2"), ("OMPI_COMM_WORLD_RANK", rank)]).output().unwrap()
+    };
+    let [first, second] = ["0", "1"].map(|rank| started(rank, &[]));
+    assert!(text(&first.stderr).contains("one of 2 processes") && text(&first.stderr).contains("--features mpi"));
+    assert_eq!((first.status.code(), second.status.code(), text(&second.stderr)), (Some(1), Some(1), ""));
+    assert!(started("1", &["--shard", "1/2", "--checkpoint", "a.part", "--out", "a.exr"]).status.success());
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use scene_core::RayCounts;
@@ -170,13 +170,19 @@ impl Checkpoint {
     /// # Errors
     /// [`OutputError`], which names the file.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        let text = serde_json::to_vec(&self.described).map_err(|error| OutputError::encode(path, error))?;
-        write_atomically(path, |file| {
-            file.write_all(MAGIC)?;
-            file.write_all(&(text.len() as u64).to_le_bytes())?;
-            file.write_all(&text)?;
-            self.film.write_state(file)
-        })
+        write_atomically(path, |file| self.write_to(file))
+    }
+
+    /// [`write`](Self::write) to anywhere.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_to(&self, mut writer: impl Write) -> io::Result<()> {
+        let text = serde_json::to_vec(&self.described)?;
+        writer.write_all(MAGIC)?;
+        writer.write_all(&(text.len() as u64).to_le_bytes())?;
+        writer.write_all(&text)?;
+        self.film.write_state(writer)
     }
 }
 

@@ -40,6 +40,17 @@ impl Progress {
         Self::new(milliseconds, "[{bar:30}] {percent:>3}%  {msg}, {eta} left", unit.into(), true)
     }
 
+    /// For nobody: another process shows its own.
+    pub fn hidden(unit: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            bar: ProgressBar::hidden(),
+            unit: unit.into(),
+            done: AtomicU64::new(0),
+            start: Instant::now(),
+            timed: false,
+        }
+    }
+
     fn new(length: u64, template: &str, unit: Cow<'static, str>, timed: bool) -> Self {
         let visible = std::io::stderr().is_terminal();
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };

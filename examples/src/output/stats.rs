@@ -29,11 +29,13 @@ pub struct RenderStats {
     pub height: u32,
     /// Samples per pixel.
     pub spp: u64,
-    /// Number of threads that rendered.
+    /// Number of processes that rendered.
+    pub ranks: usize,
+    /// Number of threads that rendered, in all processes.
     pub threads: usize,
-    /// Wall time to load and build the scene, in seconds.
+    /// Wall time to load and build the scene, in seconds; of several processes, that of the slowest.
     pub load_seconds: f64,
-    /// Wall time to render, in seconds.
+    /// Wall time to render, in seconds; of several processes, that of the slowest.
     pub render_seconds: f64,
     /// Paths from the sensor and from emitters.
     pub paths: u64,
@@ -41,8 +43,12 @@ pub struct RenderStats {
     pub closest_hit_rays: u64,
     /// Rays that asked whether two points see each other.
     pub visibility_rays: u64,
-    /// The most memory that the process had resident, in bytes; 0 where the system does not tell.
+    /// The most memory that a process had resident, in bytes; 0 where the system does not tell.
     pub peak_bytes: u64,
+    /// Photons and importons that several processes traced together, in bytes: each process has them all.
+    pub gathered_bytes: u64,
+    /// Images that the first of several processes received, in bytes.
+    pub received_bytes: u64,
 }
 
 /// The most memory that this process had resident so far, in bytes. Zero where the system does not tell: it is read
@@ -84,6 +90,7 @@ mod tests {
             "width",
             "height",
             "spp",
+            "ranks",
             "threads",
             "load_seconds",
             "render_seconds",
@@ -91,6 +98,8 @@ mod tests {
             "closest_hit_rays",
             "visibility_rays",
             "peak_bytes",
+            "gathered_bytes",
+            "received_bytes",
         ];
         keys.sort();
         documented.sort();

@@ -133,6 +133,7 @@ pub struct RenderArguments {
     #[arg(long)]
     pub stats: Option<PathBuf>,
     /// File for the exact state of the rendering: written now and then and at the end; if it is there, the rendering goes on from it.
+    /// With mpirun each rank has its own, FILE.K-of-N.
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
     /// Seconds between two checkpoints.

@@ -3,6 +3,7 @@
 mod arguments;
 mod compare;
 mod diff;
+mod done;
 mod experiment;
 mod filtered;
 mod finish;
@@ -13,6 +14,8 @@ mod parts;
 mod prepare;
 mod render;
 mod showcase;
+
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 
@@ -25,6 +28,7 @@ pub use load::{LoadError, load_description};
 pub use parts::Shard;
 pub use render::{EstimatorName, RenderSettings, estimate, estimate_in, render_to_image};
 
+use crate::distributed::{self, Ranks, StartError, launched_rank};
 pub use crate::samplers::SamplerName;
 
 /// Why a subcommand failed: one line for the user.
@@ -36,15 +40,19 @@ pub fn main() -> std::process::ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // clap's own text; if even that cannot be written, the exit code still tells.
-            let _ = error.print();
+            // clap's own text, once; if even that cannot be written, the exit code still tells.
+            if launched_rank().unwrap_or(0) == 0 {
+                let _ = error.print();
+            }
             return std::process::ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
     match run(arguments) {
         Ok(()) => std::process::ExitCode::SUCCESS,
         Err(error) => {
-            report(&format!("error: {error}"));
+            if !error.is::<Told>() {
+                report(&format!("error: {error}"));
+            }
             std::process::ExitCode::FAILURE
         }
     }
@@ -68,8 +76,31 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     }
 }
 
-/// A line to standard error. A closed pipe is no reason to fail.
+/// A failure of which the user knows.
+#[derive(Debug, thiserror::Error)]
+#[error("it has been told")]
+struct Told;
+
+/// Whether another process says what all have to say.
+static IS_SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Finds the other processes that render; only the first one [reports](report).
+fn find_ranks(has_part: bool) -> Result<Ranks, StartError> {
+    let ranks = distributed::start(has_part);
+    let rank = ranks.as_ref().map_or_else(|_| launched_rank().unwrap_or(0), Ranks::rank);
+    IS_SILENT.store(rank > 0, Ordering::Relaxed);
+    ranks
+}
+
+/// A line to standard error, from one process.
 fn report(line: &str) {
+    if !IS_SILENT.load(Ordering::Relaxed) {
+        tell(line);
+    }
+}
+
+/// A line to standard error that only this process has to say. A closed pipe is no reason to fail.
+fn tell(line: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

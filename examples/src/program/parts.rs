@@ -9,10 +9,11 @@ use scene_core::film::{Film, LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL}
 use scene_core::{ReferenceScene, Scene};
 
 use super::render::{EstimatorName, RenderSettings, attributes};
-use super::{Failure, MergeArguments, RenderArguments, report};
+use super::{Failure, MergeArguments, RenderArguments, report, tell};
+use crate::distributed::{Ranks, share};
 use crate::light_paths::smooth;
-use crate::output::{Checkpoint, CheckpointError, Described, ImageFormat, check_writable, save_image};
-use crate::render::{Budget, Progress, Rendering};
+use crate::output::{Checkpoint, CheckpointError, Described, ImageFormat, OutputError, check_writable, save_image};
+use crate::render::{Budget, MAX_PASS, Progress, Rendering};
 
 /// One of several equal parts of a rendering, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +40,26 @@ impl FromStr for Shard {
 impl Shard {
     /// Its samples of so many: all shards together have each once.
     fn samples(self, all: u64) -> Range<u64> {
-        let boundary = |k: u64| (u128::from(all) * u128::from(k) / u128::from(self.of)) as u64;
-        boundary(self.number - 1)..boundary(self.number)
+        share(self.number - 1, self.of, all)
+    }
+
+    /// That of this process, if there are others.
+    fn of_rank(ranks: &Ranks) -> Option<Self> {
+        ranks.are_several().then(|| Self { number: ranks.rank() as u64 + 1, of: ranks.size() as u64 })
+    }
+
+    /// Numbers of samples for a rendering of which only the time is known: far more than there will be, and not so many that
+    /// those of all ranks would not be in the sequences of large images.
+    fn endless(self) -> Range<u64> {
+        let length = ((1 << 26) / self.of.next_power_of_two()).clamp(1 << 10, 1 << 20);
+        (self.number - 1) * length..self.number * length
+    }
+
+    /// Its own file.
+    fn file(self, path: &Path) -> PathBuf {
+        let mut name = path.as_os_str().to_owned();
+        name.push(format!(".{}-of-{}", self.number, self.of));
+        name.into()
     }
 }
 
@@ -51,6 +70,8 @@ pub(super) struct Part {
     described: Described,
     /// Number of the first sample of this process.
     first: u64,
+    /// Number of the first sample that belongs to another one, whatever the time.
+    end: u64,
     earlier: Option<Checkpoint>,
 }
 
@@ -61,14 +82,10 @@ impl Part {
         scene: &ReferenceScene,
         settings: &mut RenderSettings,
     ) -> Result<Self, Failure> {
-        if arguments.checkpoint.is_some() || arguments.shard.is_some() {
-            // What is put together would be another image than that of one process.
-            if arguments.filtering.filter_extra > 0 {
-                return Err("--filter-extra samples depend on earlier batches: no --checkpoint, no --shard".into());
-            }
-            if settings.estimator == EstimatorName::RestirDirect {
-                return Err("restir-direct weighs by its earlier passes: no --checkpoint, no --shard".into());
-            }
+        let of_rank = Shard::of_rank(&settings.ranks);
+        let shard = arguments.shard.or(of_rank);
+        if arguments.checkpoint.is_some() || shard.is_some() {
+            check_divisible(arguments, settings, of_rank.is_some())?;
         }
         let planned = match settings.budget {
             Budget::Samples(samples) => samples,
@@ -76,22 +93,24 @@ impl Part {
         };
         let described =
             Described { rendering: identity(arguments, scene, settings), planned, ..described(scene, settings) };
-        let mut range = settings.first..settings.first + planned;
-        if let Some(shard) = arguments.shard {
-            if planned == 0 {
-                return Err("--shard divides a number of samples: give --spp, not --time".into());
-            }
+        let (mut range, mut end) = (settings.first..settings.first + planned, u64::MAX);
+        if let Some(shard) = shard {
             range = shard.samples(planned);
+            if planned == 0 {
+                let endless = shard.endless();
+                (range, end) = (endless.start..endless.start, endless.end);
+            }
         }
-        if let Some(path) = &arguments.checkpoint {
+        let path = arguments.checkpoint.as_deref().map(|path| of_rank.map_or(path.to_owned(), |part| part.file(path)));
+        if let Some(path) = &path {
             check_writable(path)?;
         }
-        let earlier = match &arguments.checkpoint {
+        let earlier = match &path {
             Some(path) if path.exists() => Some(Checkpoint::read(path)?),
             _ => None,
         };
         let mut first = range.start;
-        if let (Some(Checkpoint { described: before, .. }), Some(path)) = (&earlier, &arguments.checkpoint) {
+        if let (Some(Checkpoint { described: before, .. }), Some(path)) = (&earlier, &path) {
             before.check_same(&described).map_err(|error| format!("{}: {error}", path.display()))?;
             first = match before.samples[..] {
                 [] => first,
@@ -101,14 +120,24 @@ impl Part {
                     return Err(format!("{}: it has samples {ranges:?} of another part", path.display()).into());
                 }
             };
-            report(&format!("{}: {} samples per pixel are there", path.display(), first - range.start));
+            tell(&format!("{}: {} samples per pixel are there", path.display(), first - range.start));
         }
         settings.first = first;
         if planned > 0 {
             settings.planned = Some(planned);
             settings.budget = Budget::Samples(range.end - first);
         }
-        Ok(Self { path: arguments.checkpoint.clone(), described, first, earlier })
+        Ok(Self { path, described, first, end, earlier })
+    }
+
+    /// Whether this process has taken all samples that it may take.
+    pub(super) fn is_full(&self, pass: &Progress<'_>) -> bool {
+        self.first.saturating_add(pass.samples).saturating_add(MAX_PASS) > self.end
+    }
+
+    /// Keeps what is done, if it is to be kept.
+    pub(super) fn keep(&self, done: &Checkpoint) -> Result<(), OutputError> {
+        self.path.as_deref().map_or(Ok(()), |path| done.write(path))
     }
 
     /// All that is known after the given rendering.
@@ -127,6 +156,33 @@ impl Part {
         let path = self.path.as_deref()?;
         Some(Keeper { part: self, path, every: Duration::from_secs_f64(seconds), last: Instant::now() })
     }
+}
+
+/// Refuses what would be another image than that of one process if it were put together.
+fn check_divisible(arguments: &RenderArguments, settings: &RenderSettings, has_ranks: bool) -> Result<(), Failure> {
+    const DIVIDERS: &str = "no --checkpoint, no --shard, no mpirun";
+    if arguments.filtering.filter_extra > 0 {
+        return Err(format!("--filter-extra samples depend on earlier batches: {DIVIDERS}").into());
+    }
+    if settings.estimator == EstimatorName::RestirDirect {
+        return Err(format!("restir-direct weighs by its earlier passes: {DIVIDERS}").into());
+    }
+    if has_ranks && arguments.shard.is_some() {
+        return Err("--shard: mpirun shares out the samples".into());
+    }
+    if has_ranks && arguments.continued.is_some() {
+        return Err("--continue: one process only; with mpirun, --checkpoint".into());
+    }
+    if matches!(settings.budget, Budget::Seconds(_)) {
+        if arguments.shard.is_some() {
+            return Err("--shard divides a number of samples: give --spp, not --time".into());
+        }
+        let shrinks = settings.estimator == EstimatorName::Sppm || settings.photons.caustics;
+        if has_ranks && (shrinks || settings.path_filter.is_some()) {
+            return Err("the radius shrinks from sample to sample: with mpirun give --spp, not --time".into());
+        }
+    }
+    Ok(())
 }
 
 /// Writes checkpoints now and then.
@@ -315,7 +371,16 @@ mod tests {
             }
             assert_eq!(next, all);
         }
+        for of in [2, 3, 64, 1000, 100_000] {
+            let end_of_last = (1..=of).fold(0, |next, number| {
+                let samples = Shard { number, of }.endless();
+                assert!(samples.start == next && samples.end > next + MAX_PASS, "{number} of {of}");
+                samples.end
+            });
+            assert!(end_of_last <= 1 << 27, "{of}");
+        }
         assert_eq!("2/8".parse(), Ok(Shard { number: 2, of: 8 }));
+        assert_eq!(Shard { number: 2, of: 8 }.file(Path::new("a/b.part")), Path::new("a/b.part.2-of-8"));
         for bad in ["0/4", "5/4", "1", "1/0", "a/b", "-1/2"] {
             assert!(bad.parse::<Shard>().is_err(), "{bad}");
         }

@@ -5,6 +5,7 @@ use scene_core::{ReferenceScene, Scene, SceneDescription};
 
 use super::render::{EstimatorName, FilterName, RenderSettings};
 use super::{Failure, RenderArguments, load_description, report};
+use crate::distributed::Ranks;
 use crate::render::Budget;
 use crate::samplers::SamplerName;
 
@@ -81,6 +82,7 @@ impl RenderArguments {
             resampling: self.resampling.clone(),
             light_photons: self.light_photons.clone(),
             photons: self.photons.clone(),
+            ranks: Ranks::default(),
             ao_distance: self.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
         };
         if settings.selects_by_photons() && settings.light_photons.other_rays == 0 {

@@ -8,27 +8,26 @@ use std::time::{Duration, Instant};
 use clap::ValueEnum;
 use qmc_sampling::{Independent, OwenSobol, SamplerFamily};
 use scene_core::film::{Filter, LayeredImage};
-use scene_core::{ReferenceScene, RussianRoulette, Scene, Sensor};
+use scene_core::{RayCounts, ReferenceScene, RussianRoulette, Scene, Sensor};
 use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
+use super::done::Done;
 use super::filtered::PATH_FILTER;
 use super::finish::{Finish, Plain, Run};
 use super::parts::{Part, described, develop, image_of};
-use super::{Failure, RenderArguments, filtered, report};
+use super::{Failure, RenderArguments, Told, filtered, find_ranks, report, tell};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
+use crate::distributed::{Ranks, RanksError};
 use crate::estimators::{
     AmbientOcclusion, BidirectionalPaths, FirstEvent, LightTracer, NextEvent, NoLightPaths, OwnSampling, PathTracer,
     PhotonLights, VirtualLights,
 };
 use crate::filters::{FilterSettings, PathFilterName};
 use crate::light_paths::LightPathSettings;
-use crate::light_photons::LightPhotonSettings;
-use crate::output::{
-    Checkpoint, Display, ImageFormat, Interrupt, Progress, RenderStats, check_writable, peak_bytes, save_image,
-    write_json,
-};
+use crate::light_photons::{LightPhotonSettings, LightPhotonsError};
+use crate::output::{Display, ImageFormat, Interrupt, Progress, check_writable, save_image, write_json};
 use crate::photons::{PathLimits, PhotonSettings};
-use crate::render::{Budget, Observe, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
+use crate::render::{Budget, Observe, PassContext, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
 use crate::resampling::{AnyDirect, DirectName, ResamplingSettings};
 use crate::samplers::{AnyFamily, SamplerName};
 
@@ -156,6 +155,8 @@ pub struct RenderSettings {
     pub light_photons: LightPhotonSettings,
     /// Photon maps.
     pub photons: PhotonSettings,
+    /// The processes that render together.
+    pub ranks: Ranks,
 }
 
 impl RenderSettings {
@@ -239,6 +240,7 @@ impl RenderSettings {
             resampling: ResamplingSettings::default(),
             light_photons: LightPhotonSettings::default(),
             photons: PhotonSettings::default(),
+            ranks: Ranks::default(),
         }
     }
 }
@@ -335,9 +337,10 @@ fn estimate_with<S: Scene + Sync>(
                 roulette,
                 first_event: FirstEvent::Any,
             };
-            let mut rendering = finish.observable(&run, &camera, observe)?;
+            let rays = photons.as_ref().map_or(RayCounts::default(), PhotonLights::rays);
+            let mut rendering = finish.observable(&run, &camera, &mut counting(rays, observe))?;
+            rendering.rays += rays;
             if let Some(photons) = &photons {
-                rendering.rays += photons.rays();
                 rendering.preparation_seconds += photons.seconds();
                 rendering.seconds += photons.seconds();
             }
@@ -359,7 +362,10 @@ fn estimate_with<S: Scene + Sync>(
                 return finish.other(&run, &camera, None::<&NoLightPaths>, observe);
             }
             let camera = settings.photons.mapping(scene, direct, choice, limits)?;
-            finish.observable(&run, &camera, observe)
+            let rays = shared_maps(&run, |context| camera.prepare(context, &settings.ranks))?;
+            let mut rendering = finish.observable(&run, &camera, &mut counting(rays, observe))?;
+            rendering.rays += rays;
+            Ok(rendering)
         }
         EstimatorName::Light => {
             path.first_event = FirstEvent::SpecularOnly;
@@ -416,7 +422,34 @@ fn light_photons<S: Scene + Sync>(
     if !settings.selects_by_photons() {
         return Ok(None);
     }
-    Ok(thread_pool(settings.threads)?.install(|| PhotonLights::trace(scene, samplers, &settings.light_photons))?)
+    let trace = || PhotonLights::trace_by(scene, samplers, &settings.light_photons, &settings.ranks);
+    thread_pool(settings.threads)?.install(trace).map_err(|error| match error {
+        LightPhotonsError::Ranks(error) => error.into(),
+        error => error.into(),
+    })
+}
+
+/// Traces the light paths that all samples share together with the other ranks, even if there is nothing left to be done here.
+/// One process does that when it needs them.
+fn shared_maps<S: Scene + Sync, F: SamplerFamily>(
+    run: &Run<'_, S, F>,
+    prepare: impl FnOnce(&PassContext<'_, S, F>) -> Result<RayCounts, RanksError> + Send,
+) -> Result<RayCounts, RenderError> {
+    let &Run { scene, samplers, settings } = run;
+    let ranks = &settings.ranks;
+    if !ranks.are_several() || !ranks.any(settings.budget != Budget::Samples(0))? {
+        return Ok(RayCounts::default());
+    }
+    let context = PassContext { scene, samplers, filter: settings.filter };
+    Ok(thread_pool(settings.threads)?.install(|| prepare(&context))?)
+}
+
+/// Counts rays that were traced before the first pass.
+fn counting<'a>(rays: RayCounts, observe: Observe<'a>) -> impl FnMut(Pass<'_>) -> ControlFlow<()> + Send + use<'a> {
+    move |mut pass| {
+        pass.rays += rays;
+        observe(pass)
+    }
 }
 
 /// A finished image with the settings in its attributes.
@@ -450,57 +483,90 @@ pub(super) fn attributes(scene: &ReferenceScene, settings: &RenderSettings) -> B
     texts.into_iter().chain(filter).map(|(key, text)| (key.to_owned(), text)).collect()
 }
 
-/// Loads, renders, writes.
-pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+/// Everything that can go wrong before the first ray.
+struct Prepared {
+    scene: ReferenceScene,
+    settings: RenderSettings,
+    outputs: Vec<PathBuf>,
+    /// Samples per pixel of an image that is to be continued.
+    earlier: Option<(u64, LayeredImage)>,
+    part: Part,
+    load_seconds: f64,
+}
+
+/// Loads, and finds out whether the files can be written.
+fn prepare(arguments: &RenderArguments, ranks: &Ranks) -> Result<Prepared, Failure> {
     // Load and build the scene.
     let start = Instant::now();
     let (scene, wishes) = arguments.build(arguments.description()?)?;
     arguments.check(&scene)?;
-    let name = scene.name().to_owned();
-    let mut settings = arguments.settings(&scene, &wishes)?;
+    let mut settings = RenderSettings { ranks: ranks.clone(), ..arguments.settings(&scene, &wishes)? };
     let load_seconds = start.elapsed().as_secs_f64();
 
     // Find out now whether the files can be written.
-    let outputs = if arguments.out.is_empty() { default_outputs(&name)? } else { arguments.out.clone() };
-    for path in &outputs {
-        ImageFormat::of(path)?;
-        check_writable(path)?;
-    }
-    if let Some(path) = &arguments.stats {
-        check_writable(path)?;
+    let mut outputs = Vec::new();
+    if ranks.is_first() {
+        outputs = if arguments.out.is_empty() { default_outputs(scene.name())? } else { arguments.out.clone() };
+        for path in &outputs {
+            ImageFormat::of(path)?;
+            check_writable(path)?;
+        }
+        if let Some(path) = &arguments.stats {
+            check_writable(path)?;
+        }
     }
 
-    // Render.
+    // Find out where to begin.
     let earlier = arguments.continued.as_deref().map(|path| filtered::earlier(path, &scene, &settings)).transpose()?;
     if let Some((done, _)) = &earlier {
         settings.first = *done;
     }
     let part = Part::of(arguments, &scene, &mut settings)?;
-    let mut watch = Watch::new(arguments, &settings, &name);
-    let mut keeper = part.keeper(arguments.checkpoint_seconds);
-    let rendering = estimate(&scene, &settings, |pass| {
-        if let Some(Err(error)) = keeper.as_mut().map(|keeper| keeper.observe(&pass)) {
-            watch.progress.suspend(|| report(&format!("warning: {error}")));
+    Ok(Prepared { scene, settings, outputs, earlier, part, load_seconds })
+}
+
+/// Loads, renders, writes; together with other processes, if there are any.
+pub(super) fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+    let ranks = find_ranks(arguments.shard.is_some())?;
+    match run_with(&ranks, arguments) {
+        Err(error) if ranks.are_several() => {
+            // Before the ranks part: the first process that ends with an error ends all others, whatever they have to say.
+            report(&format!("error: {error}"));
+            Err(Told.into())
         }
-        watch.observe(pass)
-    })?;
-    let (samples, threads) = (rendering.samples, rendering.threads);
-    let done = part.with(rendering)?;
-    let mut image = image_of(&done)?;
+        result => result,
+    }
+}
+
+fn run_with(ranks: &Ranks, arguments: &RenderArguments) -> Result<(), Failure> {
+    let Prepared { scene, settings, outputs, earlier, part, load_seconds } = ranks.agree(prepare(arguments, ranks))?;
+
+    // Render.
+    let mut watch = Watch::new(arguments, &settings, scene.name());
+    let mut keeper = part.keeper(arguments.checkpoint_seconds);
+    let rendering = ranks.agree(estimate(&scene, &settings, |pass| {
+        if let Some(Err(error)) = keeper.as_mut().map(|keeper| keeper.observe(&pass)) {
+            watch.progress.suspend(|| tell(&format!("warning: {error}")));
+        }
+        if part.is_full(&pass) { ControlFlow::Break(()) } else { watch.observe(pass) }
+    }))?;
+
+    // Keep this part, and put all together.
+    let own = ranks.agree(Done::of(&part, rendering, load_seconds))?;
+    ranks.agree(part.keep(&own.checkpoint))?;
+    let Some(done) = ranks.reduce(own)? else { return Ok(()) };
+    let mut image = image_of(&done.checkpoint)?;
     if let Some((_, earlier)) = earlier {
         image = LayeredImage::merge(&[earlier, image])?;
     }
-    watch.finish(&image, &done, samples);
+    watch.finish(&image, &done);
 
     // Write.
     for path in &outputs {
         save_image(path, &image, arguments.exposure)?;
     }
     if let Some(path) = &arguments.stats {
-        write_json(path, &stats(arguments, &done, threads, load_seconds))?;
-    }
-    if let Some(path) = &arguments.checkpoint {
-        done.write(path)?;
+        write_json(path, &done.stats(arguments, ranks.traffic()))?;
     }
     Ok(())
 }
@@ -512,24 +578,6 @@ fn default_outputs(name: &str) -> Result<Vec<PathBuf>, Failure> {
     Ok(["exr", "png"].iter().map(|extension| folder.join(format!("{name}.{extension}"))).collect())
 }
 
-fn stats(arguments: &RenderArguments, done: &Checkpoint, threads: usize, load_seconds: f64) -> RenderStats {
-    let (width, height, described) = (done.film.width(), done.film.height(), &done.described);
-    RenderStats {
-        scene: arguments.scene.clone(),
-        estimator: arguments.estimator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
-        width,
-        height,
-        spp: described.count(),
-        threads,
-        load_seconds,
-        render_seconds: described.seconds,
-        paths: described.count() * u64::from(width) * u64::from(height) + described.light_paths,
-        closest_hit_rays: described.rays[0],
-        visibility_rays: described.rays[1],
-        peak_bytes: peak_bytes(),
-    }
-}
-
 /// What looks at a rendering while it goes on: progress, viewer, Ctrl-C.
 struct Watch {
     progress: Progress,
@@ -539,11 +587,14 @@ struct Watch {
 
 impl Watch {
     fn new(arguments: &RenderArguments, settings: &RenderSettings, name: &str) -> Self {
+        let is_first = settings.ranks.is_first();
         let progress = match settings.budget {
+            _ if !is_first => Progress::hidden("samples per pixel"),
             Budget::Samples(samples) => Progress::counting(samples, "samples per pixel"),
             Budget::Seconds(seconds) => Progress::timed(Duration::from_secs_f64(seconds), "samples per pixel"),
         };
-        let display = arguments.display_server.as_deref().map_or_else(Display::none, |server| {
+        let server = arguments.display_server.as_deref().filter(|_| is_first);
+        let display = server.map_or_else(Display::none, |server| {
             Display::connect(server, name).unwrap_or_else(|error| {
                 report(&format!("warning: {error}"));
                 Display::none()
@@ -568,14 +619,15 @@ impl Watch {
         }
     }
 
-    fn finish(&mut self, image: &LayeredImage, done: &Checkpoint, samples: u64) {
+    fn finish(&mut self, image: &LayeredImage, done: &Done) {
         self.progress.finish();
         self.show(image);
-        let rejected = done.film.rejected_samples();
+        let rejected = done.film().rejected_samples();
         if rejected > 0 {
             report(&format!("warning: {rejected} samples were not finite and count as black"));
         }
         if self.interrupt.is_requested() {
+            let samples = done.cost.samples;
             report(&format!("interrupted after {samples} samples per pixel; the image so far is kept"));
         }
     }

@@ -14,7 +14,7 @@ pub enum Budget {
 /// Passes should take about this long: short enough for progress and Ctrl-C, long enough to keep all threads busy.
 const PASS_SECONDS: f64 = 0.25;
 /// Number of samples per pass at most.
-const MAX_PASS: u64 = 64;
+pub(crate) const MAX_PASS: u64 = 64;
 
 /// Cuts a budget into passes.
 #[derive(Clone, Debug)]

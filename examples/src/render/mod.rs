@@ -17,6 +17,7 @@ use scene_core::film::{Film, FilmError, Filter, SplatBuffer};
 use scene_core::{Counting, RayCounts, Scene, Sensor, Spectrum};
 
 pub use budget::Budget;
+pub(crate) use budget::MAX_PASS;
 use budget::Schedule;
 pub use camera::{CameraPass, PassContext, PassCounts, Shared, Sharing, SharingEstimator};
 

@@ -5,6 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use scene_core::film::LayeredImage;
+
 /// The program in a folder.
 pub(crate) fn lichtwerk(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lichtwerk"));
@@ -52,4 +54,20 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
+}
+
+/// An image file.
+pub(crate) fn image(folder: &Path, name: &str) -> LayeredImage {
+    LayeredImage::read_exr(&folder.join(name)).unwrap()
+}
+
+/// Same channels, bit for bit, and the same settings.
+pub(crate) fn assert_same_image(folder: &Path, one: &str, other: &str) {
+    let (a, b) = (image(folder, one), image(folder, other));
+    assert_eq!(a.channels().count(), b.channels().count(), "{one}, {other}");
+    for (name, values) in a.channels() {
+        let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert!(bits(values) == bits(b.channel(name).unwrap()), "{one} and {other} differ in {name}");
+    }
+    assert_eq!(a.attributes().collect::<Vec<_>>(), b.attributes().collect::<Vec<_>>(), "{one}, {other}");
 }
