@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use mis_heuristics::{
-    Balance, Counting, Cutoff, Densities, Float, Heuristic, Lazy, Maximum, OptimalMoments, Power, Stratification,
+    Balance, Counting, Cutoff, Densities, Float, Heuristic, Lazy, Maximum, MultiSample, OptimalMoments, Power,
+    Stratification,
 };
 use proptest::prelude::*;
 

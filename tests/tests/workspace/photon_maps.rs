@@ -5,6 +5,7 @@
 use std::ops::{ControlFlow, Range};
 
 use estimator_checks::{BatchMeans, Moments, Suite, Truth, slope_is};
+use lichtwerk::distributed::Ranks;
 use lichtwerk::estimators::{
     DirectLight, GuideScratch, ImportonGuidance, Maps, NextEvent, PathGuidance, PhotonMapping, PhotonView,
     ProgressivePhotons, Sharpness, Storing,
@@ -490,7 +491,7 @@ impl<D: DirectLight, C: EmitterChoice + Clone + Sync> CameraPass for Forgetful<D
     ) -> Result<PassCounts, FilmError> {
         let PhotonMapping { light, guidance, partition, paths, global, caustic, .. } = &self.mapping;
         self.mapping.maps.get_or_init(|| {
-            let guidance = guidance.unwrap().trace(context, &light.choice).0;
+            let guidance = guidance.unwrap().trace(context, &light.choice, &Ranks::default()).unwrap().0;
             let light = light.clone().guided(Forgetting { guidance, forgets: self.forgets });
             let storing = Storing { partition: *partition, deposition: KeepAll, primary: false, global: true };
             let mut photons = PhotonMaps::new();

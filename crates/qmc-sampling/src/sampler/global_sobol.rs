@@ -226,13 +226,13 @@ mod tests {
     fn four_at_once_are_the_same_numbers() {
         let family = GlobalSobol::new(100, 100, 5).unwrap();
         for sampler in [family.sampler(77, 3), family.sampler(77, 1 << 30), family.sampler(77, 3).fork(1)] {
-            let mut at_once = sampler;
-            let mut single = sampler;
+            let mut at_once = sampler.clone();
+            let mut single = sampler.clone();
             for _ in 0..70 {
                 assert_eq!(at_once.next_4d(), [0; 4].map(|_| single.next_1d()));
             }
             for skipped in 0..4 {
-                let (mut pairs, mut single) = (sampler, sampler);
+                let (mut pairs, mut single) = (sampler.clone(), sampler.clone());
                 for _ in 0..skipped {
                     assert_eq!(pairs.next_1d(), single.next_1d());
                 }
