@@ -41,7 +41,7 @@ fn slices_and_densities_behind_pointers_are_densities() {
     assert_eq!(Power::TWO.weight(0, slice), expected);
     assert_eq!(Power::TWO.weight(0, pointer), expected);
     assert_eq!(Power::TWO.weight(0, &vec![6.0_f32, 2.0][..]), expected);
-    let model = MultiSample::new([1, 3, 1]);
+    let model = MultiSample::new([1, 3, 1]).unwrap();
     assert_eq!(model.factor(&Balance, 0, slice), model.factor(&Balance, 0, &array));
 }
 
