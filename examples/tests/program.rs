@@ -656,11 +656,41 @@ fn parts_that_make_no_sense_are_refused() {
     fails(folder.path(), &tiny(&["--filter", "psf", "--filter-extra", "1", "--shard", "1/2"]), &["--filter-extra"]);
     fails(folder.path(), &tiny(&["--estimator", "restir-direct", "--checkpoint", "a.part"]), &["restir-direct"]);
     let halves = ["render", "cornell-box", "--size", "8x6", "--spp", "6", "--filter", "psf", "--filter-batch", "4"];
-    fails(folder.path(), &[&halves[..], &["--shard", "2/2"]].concat(), &["after 3 samples", "--filter-batch 4"]);
+    for shard in ["1/2", "2/2"] {
+        let told = ["--spp has to be a multiple of 8", "--filter-batch 4"];
+        fails(folder.path(), &[&halves[..], &["--shard", shard]].concat(), &told);
+    }
+    fails(folder.path(), &["render", "cornell-box", "--spp", "2", "--shard", "1/4"], &["not enough for 4 parts"]);
     for (out, seed) in [("1.part", "1"), ("2.part", "2")] {
         succeeds(folder.path(), &tiny(&["--seed", seed, "--checkpoint", out, "--out", "a.png"]));
     }
     fails(folder.path(), &["merge", "1.part", "2.part", "--out", "a.exr"], &["2.part", "seed: 1", "seed: 2"]);
+}
+
+#[test]
+fn images_are_merged_once_and_with_their_like() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |scene: &str, more: &[&'static str]| {
+        let scene = ["render", scene, "--size", "8x6", "--spp", "2"];
+        succeeds(folder.path(), &[&scene[..], more].concat());
+    };
+    render("cornell-box", &["--out", "a.exr"]);
+    render("cornell-box", &["--seed", "9", "--out", "b.exr"]);
+    render("furnace-box", &["--out", "c.exr"]);
+    render("cornell-box", &["--max-depth", "2", "--seed", "9", "--out", "d.exr"]);
+    fails(
+        folder.path(),
+        &["merge", "a.exr", "a.exr", "--out", "e.exr"],
+        &["a.exr: its samples 0 to 2", "another image"],
+    );
+    fails(
+        folder.path(),
+        &["merge", "a.exr", "c.exr", "--out", "e.exr"],
+        &["c.exr: its scene is 'furnace-box'", "a.exr"],
+    );
+    fails(folder.path(), &["merge", "a.exr", "d.exr", "--out", "e.exr"], &["d.exr: its maxDepth is '2'"]);
+    succeeds(folder.path(), &["merge", "a.exr", "b.exr", "--out", "e.exr"]);
+    fails(folder.path(), &["merge", "a.exr", "nowhere.exr", "--out", "e.exr"], &["nowhere.exr"]);
 }
 
 #[test]

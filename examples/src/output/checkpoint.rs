@@ -33,7 +33,7 @@ pub enum CheckpointError {
         reason: String,
     },
     /// It is of another rendering.
-    #[error("the parts are of different renderings: '{one}' and '{other}'")]
+    #[error("the parts are of different renderings: '{}' and '{}'", plain(.one), plain(.other))]
     Different {
         /// A setting of one.
         one: String,
@@ -110,6 +110,13 @@ impl Described {
             None => Ok(()),
         }
     }
+}
+
+/// A setting as it was written for comparison, in less code: `size: Some( [ 48, 36, ], ),` is `size: 48, 36`.
+fn plain(line: &str) -> String {
+    let words = line.replace("Some(", " ").replace(['[', ']', '(', ')', '{', '}', '"'], " ");
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    words.replace(" ,", ",").replace(",,", ",").trim_end_matches([',', ' ']).to_owned()
 }
 
 impl Checkpoint {
@@ -221,6 +228,14 @@ mod tests {
             ..Described::default()
         };
         Checkpoint { described, film }
+    }
+
+    #[test]
+    fn settings_are_named_without_code() {
+        assert_eq!(plain("size: Some( [ 48, 36, ], ),"), "size: 48, 36");
+        assert_eq!(plain("seed: 1,"), "seed: 1");
+        assert_eq!(plain("4 samples per pixel"), "4 samples per pixel");
+        assert_eq!(plain("estimator: Bdpt,"), "estimator: Bdpt");
     }
 
     #[test]

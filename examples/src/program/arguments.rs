@@ -80,7 +80,7 @@ const MAX_THREADS: usize = 4096;
 /// Arguments of `render`.
 #[derive(Clone, Debug, Args)]
 pub struct RenderArguments {
-    /// A builtin scene (see `lichtwerk list`) or a Mitsuba 3 XML file.
+    /// A builtin scene (see `lichtwerk list`), or a file: Mitsuba 3 .xml, glTF 2.0 .gltf or .glb, LuxCore .scn.
     pub scene: String,
     /// What adds up the light.
     #[arg(long, value_enum, default_value_t)]
@@ -119,14 +119,14 @@ pub struct RenderArguments {
     /// Reconstruction filter [default: the scene's], and path space filter [default: none]; may be given once for each.
     #[arg(long, value_enum, value_delimiter = ',')]
     pub filter: Vec<FilterName>,
-    /// Distance up to which `ao` looks for occluders [default: a tenth of the scene's radius].
+    /// Distance up to which `ao` looks for occluders, in units of the scene [default: a tenth of the scene's radius].
     #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
     pub ao_distance: Option<f64>,
     /// Image file, .exr (linear, with auxiliary channels) or .png; may be given more than once
     /// [default: out/SCENE.exr and out/SCENE.png].
     #[arg(long)]
     pub out: Vec<PathBuf>,
-    /// Exposure of PNG files, in stops.
+    /// Exposure of PNG files, in stops: 1 is twice as bright.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,
     /// File for time, rays and memory, as JSON.

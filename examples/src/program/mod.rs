@@ -8,6 +8,7 @@ mod experiment;
 mod filtered;
 mod finish;
 mod frames;
+mod idle;
 mod list;
 mod load;
 mod parts;
@@ -17,7 +18,7 @@ mod showcase;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 
 pub use arguments::{
     Arguments, Command, CompareArguments, DiffArguments, ExperimentArguments, FramesArguments, MergeArguments,
@@ -37,8 +38,19 @@ pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// Parses the command line and runs; returns the process's exit code: 0 for success, 1 for failure, 2 for a wrong
 /// command line.
 pub fn main() -> std::process::ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
+    let parsed = Arguments::command().try_get_matches();
+    let parsed = parsed.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, matches)));
+    let arguments = match parsed {
+        Ok((arguments, matches)) => {
+            if let (Some(Command::Render(render)), Some((_, matches))) = (&arguments.command, matches.subcommand()) {
+                let lines = idle::warnings(matches, render);
+                lines
+                    .iter()
+                    .filter(|_| launched_rank().unwrap_or(0) == 0)
+                    .for_each(|line| tell(&format!("warning: {line}")));
+            }
+            arguments
+        }
         Err(error) => {
             // clap's own text, once; if even that cannot be written, the exit code still tells.
             if launched_rank().unwrap_or(0) == 0 {

@@ -6,8 +6,9 @@ use std::str::FromStr;
 use std::time::{Duration, Instant};
 
 use scene_core::film::{Film, LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL};
-use scene_core::{ReferenceScene, Scene};
+use scene_core::{ReferenceScene, Scene, Sensor};
 
+use super::filtered::PATH_FILTER;
 use super::render::{EstimatorName, RenderSettings, attributes};
 use super::{Failure, MergeArguments, RenderArguments, report, tell};
 use crate::distributed::{Ranks, share};
@@ -95,6 +96,7 @@ impl Part {
             Described { rendering: identity(arguments, scene, settings), planned, ..described(scene, settings) };
         let (mut range, mut end) = (settings.first..settings.first + planned, u64::MAX);
         if let Some(shard) = shard {
+            check_enough(shard, planned, scene, settings, of_rank.is_some())?;
             range = shard.samples(planned);
             if planned == 0 {
                 let endless = shard.endless();
@@ -116,8 +118,8 @@ impl Part {
                 [] => first,
                 [[start, end]] if start == range.start && (end <= range.end || planned == 0) => end,
                 _ => {
-                    let ranges = &before.samples;
-                    return Err(format!("{}: it has samples {ranges:?} of another part", path.display()).into());
+                    let ranges = ranges(&before.samples);
+                    return Err(format!("{}: it has samples {ranges}, of another part", path.display()).into());
                 }
             };
             tell(&format!("{}: {} samples per pixel are there", path.display(), first - range.start));
@@ -185,6 +187,37 @@ fn check_divisible(arguments: &RenderArguments, settings: &RenderSettings, has_r
     Ok(())
 }
 
+/// Refuses parts some of which could not be rendered: all of them find it out, not the last one.
+fn check_enough(
+    shard: Shard,
+    planned: u64,
+    scene: &ReferenceScene,
+    settings: &RenderSettings,
+    has_ranks: bool,
+) -> Result<(), Failure> {
+    let parts = shard.of;
+    if planned == 0 {
+        return Ok(());
+    }
+    // Ranks without samples have nothing to do, and write nothing either.
+    if planned < parts && !has_ranks {
+        return Err(format!("--shard: {planned} samples per pixel are not enough for {parts} parts").into());
+    }
+    if let Some(name) = settings.path_filter {
+        let [width, height] = scene.sensor().resolution();
+        let filtering = settings.path_filtering();
+        let batch = filtering.batch(&filtering.filter(name, scene.sensor())?, u64::from(width) * u64::from(height));
+        let multiple = parts.saturating_mul(batch);
+        if !planned.is_multiple_of(multiple) {
+            return Err(format!(
+                "parts of filtered images are whole batches: --spp has to be a multiple of {multiple}, {parts} parts of --filter-batch {batch}"
+            )
+            .into());
+        }
+    }
+    Ok(())
+}
+
 /// Writes checkpoints now and then.
 pub(super) struct Keeper<'a> {
     part: &'a Part,
@@ -230,7 +263,7 @@ fn identity(arguments: &RenderArguments, scene: &ReferenceScene, settings: &Rend
         sampler: Some(settings.sampler),
         spp: None,
         time: None,
-        size: Some(scene_core::Sensor::resolution(scene.sensor())),
+        size: Some(scene.sensor().resolution()),
         threads: 0,
         max_depth: Some(settings.max_depth),
         out: Vec::new(),
@@ -264,7 +297,26 @@ fn top_level_lines(pretty: &str) -> Vec<String> {
 /// The image of a checkpoint: what one process would have written.
 pub(super) fn image_of(checkpoint: &Checkpoint) -> Result<LayeredImage, LayeredImageError> {
     let Checkpoint { described, film } = checkpoint;
-    finished(described, film, described.light_paths, described.count())
+    let mut image = finished(described, film, described.light_paths, described.count())?;
+    let _ = image.set_attribute(SAMPLES, ranges(&described.samples));
+    Ok(image)
+}
+
+/// Name of the attribute that tells which samples an image has.
+const SAMPLES: &str = "samples";
+
+/// Ranges of numbers of samples for people, ends not included: `0 to 16, 32 to 48`.
+fn ranges(samples: &[[u64; 2]]) -> String {
+    samples.iter().map(|[start, end]| format!("{start} to {end}")).collect::<Vec<_>>().join(", ")
+}
+
+/// What [`ranges`] wrote; nothing if it is anything else.
+fn parse_ranges(text: &str) -> Option<Vec<[u64; 2]>> {
+    let range = |range: &str| {
+        let (start, end) = range.split_once(" to ")?;
+        Some([start.parse().ok()?, end.parse().ok()?])
+    };
+    text.split(", ").map(range).collect()
 }
 
 /// The image of a rendering.
@@ -306,9 +358,7 @@ pub(super) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
             if arguments.checkpoint.is_some() {
                 return Err("images have no exact sums to be kept in a checkpoint".into());
             }
-            let read =
-                |path: &PathBuf| LayeredImage::read_exr(path).map_err(|error| format!("{}: {error}", path.display()));
-            LayeredImage::merge(&arguments.parts.iter().map(read).collect::<Result<Vec<_>, _>>()?)?
+            merged_images(&arguments.parts)?
         }
         _ => return Err("either checkpoints or EXR images, not both".into()),
     };
@@ -316,6 +366,52 @@ pub(super) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
         save_image(path, &image, arguments.exposure)?;
     }
     Ok(())
+}
+
+/// Settings that are the same in all parts of an image. Those of older files, or of other programs, may be missing.
+const SAME: [&str; 6] = ["scene", "estimator", "maxDepth", "heuristic", "lights", PATH_FILTER];
+
+fn merged_images(paths: &[PathBuf]) -> Result<LayeredImage, Failure> {
+    let read = |path: &PathBuf| LayeredImage::read_exr(path).map_err(Failure::from);
+    let images = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let text = |image: &LayeredImage, key: &str| image.attribute(key).map(ToString::to_string);
+    let mut all: Vec<[u64; 2]> = Vec::new();
+    let (mut numbers, mut have_samples) = (Vec::new(), true);
+    for (path, image) in paths.iter().zip(&images) {
+        for key in SAME {
+            if let (Some(one), Some(other)) = (text(&images[0], key), text(image, key)) {
+                if one != other {
+                    return Err(named(
+                        path,
+                        &format!("its {key} is '{other}', that of {} '{one}'", paths[0].display()),
+                    ));
+                }
+            }
+        }
+        // Other seeds and samplers are other samples, whatever their numbers.
+        let drawn_by = [text(image, "seed"), text(image, "sampler")];
+        let samples = text(image, SAMPLES).and_then(|samples| parse_ranges(&samples));
+        let Some(samples) = samples else {
+            have_samples = false;
+            continue;
+        };
+        let seed = text(image, "seed");
+        for [start, end] in samples {
+            let taken = |(range, by): (&[u64; 2], _)| *by == drawn_by && start < range[1] && range[0] < end;
+            if all.iter().zip(&numbers).any(taken) {
+                return Err(named(path, &format!("its samples {start} to {end} are in another image, too")));
+            }
+            all.push([start, end]);
+            numbers.push(drawn_by.clone());
+        }
+    }
+    let mut merged = LayeredImage::merge(&images)?;
+    numbers.dedup();
+    if have_samples && numbers.len() == 1 {
+        all.sort_unstable();
+        let _ = merged.set_attribute(SAMPLES, ranges(&all));
+    }
+    Ok(merged)
 }
 
 fn merged_checkpoints(arguments: &MergeArguments) -> Result<LayeredImage, Failure> {
@@ -330,7 +426,7 @@ fn merged_checkpoints(arguments: &MergeArguments) -> Result<LayeredImage, Failur
     let whole = whole.ok_or("nothing to merge")?;
     let Described { planned, samples, .. } = &whole.described;
     if *planned > 0 && whole.described.count() < *planned {
-        report(&format!("warning: of {planned} samples per pixel there are only {samples:?}"));
+        report(&format!("warning: of {planned} samples per pixel there are only {}", ranges(samples)));
     }
     if let Some(path) = &arguments.checkpoint {
         whole.write(path)?;
@@ -358,6 +454,17 @@ mod tests {
         let lines = top_level_lines(&format!("{:#?}", Settings { depth: Some(3), size: [4, 5], seed: 6 }));
         let expected = ["Settings {", "depth: Some( 3, ),", "size: [ 4, 5, ],", "seed: 6, }"];
         assert_eq!(lines, expected);
+    }
+
+    #[test]
+    fn ranges_are_written_and_read() {
+        for samples in [vec![[0, 16]], vec![[0, 1], [2, 3], [70, 1 << 40]]] {
+            assert_eq!(parse_ranges(&ranges(&samples)), Some(samples));
+        }
+        assert_eq!(ranges(&[[0, 16], [32, 48]]), "0 to 16, 32 to 48");
+        for other in ["", "0", "0 to", "a to b", "0-16"] {
+            assert_eq!(parse_ranges(other), None, "{other}");
+        }
     }
 
     #[test]

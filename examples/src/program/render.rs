@@ -1,6 +1,7 @@
 //! `lichtwerk render`.
 
 use std::collections::BTreeMap;
+use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -95,7 +96,7 @@ impl FilterName {
         }
     }
 
-    fn path_space(self) -> Option<PathFilterName> {
+    pub(super) fn path_space(self) -> Option<PathFilterName> {
         match self {
             Self::Psf => Some(PathFilterName::Psf),
             Self::PsfHash => Some(PathFilterName::PsfHash),
@@ -568,7 +569,24 @@ fn run_with(ranks: &Ranks, arguments: &RenderArguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.stats {
         write_json(path, &done.stats(arguments, ranks.traffic()))?;
     }
+    if std::io::stderr().is_terminal() {
+        report(&summary(&outputs, &done));
+    }
     Ok(())
+}
+
+/// What was written, for a terminal.
+fn summary(outputs: &[PathBuf], done: &Done) -> String {
+    let files = outputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ");
+    let (film, described) = (done.film(), &done.checkpoint.described);
+    let rays = described.rays.iter().sum::<u64>() as f64;
+    format!(
+        "{files}: {} x {}, {} samples per pixel, {:.1} s, {rays:.2e} rays",
+        film.width(),
+        film.height(),
+        described.count(),
+        done.cost.seconds
+    )
 }
 
 /// `out/NAME.exr` and `out/NAME.png`.
