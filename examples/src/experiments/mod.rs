@@ -65,17 +65,17 @@ pub const EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "ris-ratio",
-        about: "figure 3 of that paper: where more candidates pay, and where more samples; variances predicted and measured",
+        about: "figure 3 of Talbot, Cline and Egbert 2005: where more candidates pay, and where more samples; variances predicted and measured",
         measure: resampling::ratio,
     },
     Experiment {
         name: "ris-direct",
-        about: "figure 4 of that paper: direct light in equal time, the robust choice of M and N against the best",
+        about: "figure 4 of Talbot, Cline and Egbert 2005: direct light in equal time, the robust choice of M and N against the best",
         measure: resampling::direct,
     },
     Experiment {
         name: "ris-brdf",
-        about: "figure 5 of that paper: any scattering function by resampling of uniform directions",
+        about: "figure 5 of Talbot, Cline and Egbert 2005: any scattering function by resampling of uniform directions",
         measure: resampling::brdf,
     },
     Experiment {
@@ -95,12 +95,12 @@ pub const EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "caustic-split",
-        about: "figure 3 of that paper: more photons for caustics, without and with a projection map",
+        about: "figure 3 of Keller and Wald 2000: more photons for caustics, without and with a projection map",
         measure: photons::split,
     },
     Experiment {
         name: "door-slit",
-        about: "figure 4 of that paper: a room that is lit by a slit, with photons where importance is",
+        about: "figure 4 of Keller and Wald 2000: a room that is lit by a slit, with photons where importance is",
         measure: photons::slit,
     },
     Experiment {
@@ -110,22 +110,22 @@ pub const EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "psf-weights",
-        about: "figure 4 of that paper: what each similarity weight gains",
+        about: "figure 4 of Keller, Dahm and Binder 2014: what each similarity weight gains",
         measure: filtering::weights,
     },
     Experiment {
         name: "psf-iterated",
-        about: "figure 2 of that paper: averages of averages, noise against detail",
+        about: "figure 2 of Keller, Dahm and Binder 2014: averages of averages, noise against detail",
         measure: filtering::iterated,
     },
     Experiment {
         name: "psf-applications",
-        about: "figure 6 of that paper: occlusion, shadows, indirect light, leaves, translucency, several cameras",
+        about: "figure 6 of Keller, Dahm and Binder 2014: occlusion, shadows, indirect light, leaves, translucency, several cameras",
         measure: filtering::applications,
     },
     Experiment {
         name: "psf-antialias",
-        about: "figure 7 of that paper: a fence with one light path per pixel and three more camera samples",
+        about: "figure 7 of Keller, Dahm and Binder 2014: a fence with one light path per pixel and three more camera samples",
         measure: filtering::antialias,
     },
 ];
