@@ -374,44 +374,59 @@ const SAME: [&str; 6] = ["scene", "estimator", "maxDepth", "heuristic", "lights"
 fn merged_images(paths: &[PathBuf]) -> Result<LayeredImage, Failure> {
     let read = |path: &PathBuf| LayeredImage::read_exr(path).map_err(Failure::from);
     let images = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    let text = |image: &LayeredImage, key: &str| image.attribute(key).map(ToString::to_string);
-    let mut all: Vec<[u64; 2]> = Vec::new();
-    let (mut numbers, mut have_samples) = (Vec::new(), true);
-    for (path, image) in paths.iter().zip(&images) {
-        for key in SAME {
-            if let (Some(one), Some(other)) = (text(&images[0], key), text(image, key)) {
-                if one != other {
-                    return Err(named(
-                        path,
-                        &format!("its {key} is '{other}', that of {} '{one}'", paths[0].display()),
-                    ));
-                }
-            }
-        }
-        // Other seeds and samplers are other samples, whatever their numbers.
-        let drawn_by = [text(image, "seed"), text(image, "sampler")];
-        let samples = text(image, SAMPLES).and_then(|samples| parse_ranges(&samples));
-        let Some(samples) = samples else {
-            have_samples = false;
-            continue;
-        };
-        let seed = text(image, "seed");
-        for [start, end] in samples {
-            let taken = |(range, by): (&[u64; 2], _)| *by == drawn_by && start < range[1] && range[0] < end;
-            if all.iter().zip(&numbers).any(taken) {
-                return Err(named(path, &format!("its samples {start} to {end} are in another image, too")));
-            }
-            all.push([start, end]);
-            numbers.push(drawn_by.clone());
-        }
-    }
+    let all: Vec<_> = paths.iter().zip(&images).collect();
+    check_alike(&all)?;
+    let samples = samples_of(&all)?;
     let mut merged = LayeredImage::merge(&images)?;
-    numbers.dedup();
-    if have_samples && numbers.len() == 1 {
-        all.sort_unstable();
-        let _ = merged.set_attribute(SAMPLES, ranges(&all));
+    if let Some(samples) = samples {
+        let _ = merged.set_attribute(SAMPLES, ranges(&samples));
     }
     Ok(merged)
+}
+
+fn text(image: &LayeredImage, key: &str) -> Option<String> {
+    image.attribute(key).map(ToString::to_string)
+}
+
+/// Refuses images of different renderings.
+fn check_alike(all: &[(&PathBuf, &LayeredImage)]) -> Result<(), Failure> {
+    let Some((first_path, first)) = all.first() else { return Ok(()) };
+    for (path, image) in all {
+        for key in SAME {
+            let (one, other) = (text(first, key), text(image, key));
+            if one.is_some() && other.is_some() && one != other {
+                let [one, other] = [one, other].map(Option::unwrap_or_default);
+                let message = format!("its {key} is '{other}', that of {} '{one}'", first_path.display());
+                return Err(named(path, &message));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses samples that are in two images; all of them, if all images tell theirs and were drawn by the same numbers.
+fn samples_of(all: &[(&PathBuf, &LayeredImage)]) -> Result<Option<Vec<[u64; 2]>>, Failure> {
+    // Other seeds and samplers are other samples, whatever their numbers.
+    let drawn_by = |image: &LayeredImage| [text(image, "seed"), text(image, "sampler")];
+    let mut taken: Vec<([u64; 2], [Option<String>; 2])> = Vec::new();
+    let mut are_known = true;
+    for (path, image) in all {
+        let Some(samples) = text(image, SAMPLES).and_then(|samples| parse_ranges(&samples)) else {
+            are_known = false;
+            continue;
+        };
+        for [start, end] in samples {
+            let overlaps = |(range, by): &([u64; 2], _)| *by == drawn_by(image) && start < range[1] && range[0] < end;
+            if taken.iter().any(overlaps) {
+                return Err(named(path, &format!("its samples {start} to {end} are in another image, too")));
+            }
+            taken.push(([start, end], drawn_by(image)));
+        }
+    }
+    let are_one_sequence = taken.windows(2).all(|pair| pair[0].1 == pair[1].1);
+    let mut samples: Vec<_> = taken.into_iter().map(|(range, _)| range).collect();
+    samples.sort_unstable();
+    Ok((are_known && are_one_sequence).then_some(samples))
 }
 
 fn merged_checkpoints(arguments: &MergeArguments) -> Result<LayeredImage, Failure> {
