@@ -57,17 +57,17 @@ pub fn load_description(scene: &str, definitions: &[(String, String)]) -> Result
     }
 }
 
-/// The builtin scene that was probably meant.
+/// The builtin scene that was probably meant: the shortest that begins so, or the most similar one.
 fn hint(name: &str) -> String {
     let name = name.to_ascii_lowercase();
-    let likeness = |builtin: &Builtin| match builtin.name.starts_with(&name) && !name.is_empty() {
-        true => 1.0,
-        false => strsim::jaro_winkler(&name, builtin.name),
+    let names = || Builtin::ALL.iter().map(|builtin| builtin.name);
+    let longer = names().filter(|builtin| !name.is_empty() && builtin.starts_with(&name)).min_by_key(|name| name.len());
+    let similar = || {
+        let likeness = |builtin: &str| strsim::jaro_winkler(&name, builtin);
+        let best = names().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        best.filter(|best| likeness(best) > 0.8)
     };
-    let best = Builtin::ALL.iter().map(|builtin| (likeness(builtin), builtin.name)).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.filter(|(likeness, _)| *likeness > 0.8)
-        .map(|(_, name)| format!("; did you mean '{name}'?"))
-        .unwrap_or_default()
+    longer.or_else(similar).map(|meant| format!("; did you mean '{meant}'?")).unwrap_or_default()
 }
 
 #[cfg(test)]
