@@ -240,7 +240,10 @@ fn what_makes_no_sense_is_told_once() {
     fail_together(path, 2, &scene(&["--estimator", "sppm", "--time", "1"]), &["radius", "--spp"]);
     fail_together(path, 2, &scene(&["--estimator", "photon-map", "--global-ratio", "0.000001"]), &["error: "]);
     let halves = scene(&["--spp", "6", "--filter", "psf", "--filter-batch", "4"]);
-    fail_together(path, 2, &halves, &["rank 1: ", "after 3 samples", "--filter-batch 4"]);
+    fail_together(path, 2, &halves, &["multiple of 8", "--filter-batch 4"]);
+    // Of one rank alone.
+    std::fs::write(path.join("c.part.2-of-2"), "nonsense").unwrap();
+    fail_together(path, 2, &scene(&["--checkpoint", "c.part"]), &["rank 1: ", "c.part.2-of-2", "not a checkpoint"]);
 
     let output = mpirun(path, 3, &["render", "cornell-box", "--nonsense"]).output().unwrap();
     assert!(!output.status.success());
