@@ -13,7 +13,7 @@ use path_space_filter::{
 };
 use qmc_sampling::{Independent, OwenSobol, Sampler, SamplerFamily};
 use rand::Rng;
-use range_search::{Bvh, HashGrid, RangeIndex, divide_and_conquer};
+use range_search::{HashGrid, RangeIndex};
 
 /// Neighbours of a nearest-neighbour query.
 const NEAREST: usize = 50;
@@ -58,8 +58,11 @@ fn range_searches(effort: &Effort) -> Vec<(&'static str, BTreeMap<&'static str, 
     let (points, radius) = surface_points(effort.points);
     let points = &points;
     let grid = &HashGrid::build(points, |p| *p, radius).expect("a grid");
-    let (kiddo, bvh) = (&kiddo_tree(points), &Bvh::build(points, |p| *p).expect("a hierarchy"));
+    let kiddo = &kiddo_tree(points);
     let random = &points[..effort.queries];
+    // All points one after the other along the surfaces, which is kind to both.
+    let ordered: Vec<[f32; 3]> = grid.order().map(|id| points[id]).collect();
+    let ordered = &ordered[..];
     let sum_within = |index: &HashGrid, queries: &[[f32; 3]]| {
         let mut sum = 0.0;
         queries.iter().for_each(|query| index.for_each_within(*query, radius, |_, d2| sum += d2));
@@ -79,7 +82,7 @@ fn range_searches(effort: &Effort) -> Vec<(&'static str, BTreeMap<&'static str, 
             Box::new(|| {
                 let mut found = Vec::new();
                 let farthest = |query: &[f32; 3]| {
-                    bvh.k_nearest(*query, NEAREST, f32::INFINITY, &mut found);
+                    grid.k_nearest(*query, NEAREST, f32::INFINITY, &mut found);
                     found.last().map(|last| last.distance_squared())
                 };
                 random.iter().filter_map(farthest).sum()
@@ -88,23 +91,14 @@ fn range_searches(effort: &Effort) -> Vec<(&'static str, BTreeMap<&'static str, 
         ("kiddo", Box::new(|| kiddo_nearest(kiddo, random, NEAREST))),
     ];
     let all_points: Vec<Contestant<'_>> = vec![
-        (
-            "ours",
-            Box::new(|| {
-                let mut sum = 0.0;
-                let add = |_: usize, found: &[range_search::Neighbor]| {
-                    sum += found.iter().map(|neighbor| neighbor.distance_squared()).sum::<f32>();
-                };
-                divide_and_conquer(points, |p| *p, points, |q| *q, radius, add).map_or(f32::NAN, |()| sum)
-            }),
-        ),
-        ("kiddo", Box::new(|| kiddo_within(kiddo, points, radius))),
+        ("ours", Box::new(|| sum_within(grid, ordered))),
+        ("kiddo", Box::new(|| kiddo_within(kiddo, ordered, radius))),
     ];
     vec![
         ("range search, build", race(turns, build)),
         ("range search, fixed radius, random order", race(turns, within)),
         ("range search, 50 nearest, random order", race(turns, nearest)),
-        ("range search, all around all", race(turns, all_points)),
+        ("range search, all around all, in order", race(turns, all_points)),
     ]
 }
 

@@ -19,15 +19,15 @@ import speed
 # Quantiles of Student's t, 97.5 %, by degrees of freedom.
 STUDENT = {1: 12.71, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365, 8: 2.306, 9: 2.262}
 
-# What bounds each number of ours, as found by counting and profiling (docs/performance.md).
+# What bounds each number of ours (docs/performance.md, docs/range-search.md).
 LIMITS = {
-    "range search, build": "two passes over the points: 12 + 16 bytes a point, read and written",
-    "range search, fixed radius, random order": "cache misses: about nine rows of cells a query, in a million points",
-    "range search, 50 nearest, random order": "distances, and the heap of 50",
-    "range search, all around all": "distances: about 70 are computed for 50 neighbours",
-    "path space filter, two threads": "distances and weights of the neighbours; bytes of their normals and albedo",
-    "Owen-scrambled Sobol points, 4D": "integer operations of four scrambles",
-    "independent numbers": "a multiplication's latency",
+    "range search, build": "memory: a counting sort in two steps",
+    "range search, fixed radius, random order": "latency of memory: nine ranges of points a query",
+    "range search, 50 nearest, random order": "the same, and the selection of 50",
+    "range search, all around all, in order": "distance tests, eight at a time",
+    "path space filter, two threads": "distance tests and weights of about 51 neighbours each",
+    "Owen-scrambled Sobol points, 4D": "integer operations",
+    "independent numbers": "integer operations",
     "paths": "latency of traversal: nodes and packs that wait for the ones before",
 }
 
@@ -62,7 +62,8 @@ def in_turns(options):
         print(f"turn {turn + 1} of {options.repetitions}", file=sys.stderr)
         turn_of_all = rust_peers(options)
         for comparison, value in nanoflann(options).items():
-            turn_of_all[comparison]["nanoflann"] = value
+            # What only nanoflann measures, in random order, has nothing beside it.
+            turn_of_all.setdefault(comparison, {})["nanoflann"] = value
         for comparison, contestants in turn_of_all.items():
             for contestant, value in contestants.items():
                 seconds.setdefault(comparison, {}).setdefault(contestant, []).append(value)
