@@ -23,7 +23,7 @@ STUDENT = {1: 12.71, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365,
 LIMITS = {
     "range search, build": "memory: a counting sort in two steps",
     "range search, fixed radius, random order": "latency of memory: nine ranges of points a query",
-    "range search, 50 nearest, random order": "the same, and the selection of 50",
+    "range search, 50 nearest, random order": "latency of memory, and the selection of 50",
     "range search, all around all, in order": "distance tests, eight at a time",
     "path space filter, two threads": "distance tests and weights of about 51 neighbours each",
     "Owen-scrambled Sobol points, 4D": "integer operations",
