@@ -70,8 +70,11 @@ impl Context {
         Ok(check_writable(&self.report_file())?)
     }
 
-    /// The report that is in the folder already, if it is one of the same experiment, form and seed.
+    /// The report that is in the folder already, if it is to be kept and is one of the same experiment, form and seed.
     pub(super) fn kept_report(&self) -> Option<Report> {
+        if !self.keep {
+            return None;
+        }
         let text = std::fs::read(self.report_file()).ok()?;
         let report: Report = serde_json::from_slice(&text).ok()?;
         let is_same = report.experiment == self.experiment && report.quick == self.quick && report.seed == self.seed;

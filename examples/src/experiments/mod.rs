@@ -143,7 +143,7 @@ impl Experiment {
     /// What the experiment fails of, or a file that cannot be written.
     pub fn run(&self, context: &Context) -> Result<Report, Failure> {
         context.prepare_folder()?;
-        let report = match context.kept_report().filter(|_| context.keep) {
+        let report = match context.kept_report() {
             Some(kept) => kept,
             None => {
                 let report = (self.measure)(context)?;

@@ -11,7 +11,7 @@ use super::Failure;
 use super::finish::{Finish, Run};
 use super::render::{EstimatorName, RenderSettings};
 use crate::estimators::{LightEstimator, NoLightPaths};
-use crate::filtering::{Filtered, Observable, Tracing};
+use crate::filtering::{AnyFilter, Filtered, Observable, Tracing};
 use crate::filters::{FilterError, FilterSettings, PathFilterName};
 use crate::render::{CameraPass, Observe, RenderError, Rendering};
 
@@ -31,6 +31,18 @@ pub(super) fn check(settings: &RenderSettings) -> Result<(), FilterError> {
     }
 }
 
+/// The filter, and how many samples per pixel of an image by this sensor are averaged together.
+pub(super) fn filter_and_batch(
+    name: PathFilterName,
+    filtering: &FilterSettings,
+    sensor: &impl Sensor,
+) -> Result<(AnyFilter, u64), FilterError> {
+    let filter = filtering.filter(name, sensor)?;
+    let [width, height] = sensor.resolution();
+    let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));
+    Ok((filter, batch))
+}
+
 impl Finish for PathFilterName {
     /// Filters it.
     fn observable<S: Scene + Sync, F: SamplerFamily>(
@@ -41,9 +53,7 @@ impl Finish for PathFilterName {
     ) -> Result<Rendering, RenderError> {
         let (settings, sensor) = (run.settings, run.scene.sensor());
         let filtering = settings.path_filtering();
-        let filter = filtering.filter(*self, sensor)?;
-        let [width, height] = sensor.resolution();
-        let batch = filtering.batch(&filter, u64::from(width) * u64::from(height));
+        let (filter, batch) = filter_and_batch(*self, &filtering, sensor)?;
         let first = settings.first;
         if !first.is_multiple_of(batch) {
             return Err(FilterError::Continue { first, batch }.into());

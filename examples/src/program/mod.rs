@@ -43,17 +43,13 @@ pub fn main() -> std::process::ExitCode {
     let arguments = match parsed {
         Ok((arguments, matches)) => {
             if let (Some(Command::Render(render)), Some((_, matches))) = (&arguments.command, matches.subcommand()) {
-                let lines = idle::warnings(matches, render);
-                lines
-                    .iter()
-                    .filter(|_| launched_rank().unwrap_or(0) == 0)
-                    .for_each(|line| tell(&format!("warning: {line}")));
+                warn_of_idle(matches, render);
             }
             arguments
         }
         Err(error) => {
             // clap's own text, once; if even that cannot be written, the exit code still tells.
-            if launched_rank().unwrap_or(0) == 0 {
+            if is_first_launched() {
                 let _ = error.print();
             }
             return std::process::ExitCode::from(if error.use_stderr() { 2 } else { 0 });
@@ -67,6 +63,17 @@ pub fn main() -> std::process::ExitCode {
             }
             std::process::ExitCode::FAILURE
         }
+    }
+}
+
+/// Whether this process is the first that a launcher started, or the only one: the others would say the same.
+fn is_first_launched() -> bool {
+    launched_rank().unwrap_or(0) == 0
+}
+
+fn warn_of_idle(matches: &clap::ArgMatches, render: &RenderArguments) {
+    if is_first_launched() {
+        idle::warnings(matches, render).iter().for_each(|line| tell(&format!("warning: {line}")));
     }
 }
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use scene_core::film::{Film, LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
-use super::filtered::PATH_FILTER;
+use super::filtered::{PATH_FILTER, filter_and_batch};
 use super::render::{EstimatorName, RenderSettings, attributes};
 use super::{Failure, MergeArguments, RenderArguments, report, tell};
 use crate::distributed::{Ranks, share};
@@ -204,9 +204,7 @@ fn check_enough(
         return Err(format!("--shard: {planned} samples per pixel are not enough for {parts} parts").into());
     }
     if let Some(name) = settings.path_filter {
-        let [width, height] = scene.sensor().resolution();
-        let filtering = settings.path_filtering();
-        let batch = filtering.batch(&filtering.filter(name, scene.sensor())?, u64::from(width) * u64::from(height));
+        let (_, batch) = filter_and_batch(name, &settings.path_filtering(), scene.sensor())?;
         let multiple = parts.saturating_mul(batch);
         if !planned.is_multiple_of(multiple) {
             return Err(format!(
