@@ -216,7 +216,10 @@ fn report_on(setup: &Setup, proposals: &str, all: &[Candidate<'_>], report: &mut
         let id = format!("{scene}-{proposals}-variance-reduction-of-the-{what}-choice");
         report.claims.push(match (proposals, scene) {
             ("paper", "blob") => at_least(id, gain, 0.1),
-            ("paper", "blob-environment") => at_least(id, gain, 0.7),
+            ("paper", "blob-environment") => at_least(id, gain, 0.7).because(
+                "Shadow rays are cheap here, and importance sampling traces none for a candidate without light. With the paper's ratio of costs the same \
+                 variances give what it claims: see the claim that says so.",
+            ),
             _ => reported(id, gain),
         });
     }
