@@ -67,7 +67,11 @@ pub(super) fn measure(context: &Context) -> Result<Report, Failure> {
             report.rows.push(trials.fill(Row::new(setup.scene.name(), "path", params)));
             if sampler != BASELINE {
                 let gain = ratio_of_means(all[baseline].relative_mse(), trials.relative_mse());
-                report.claims.push(above(format!("gain-of-{}-at-equal-{stage}", sampler.name()), gain, 1.0));
+                let claim = above(format!("gain-of-{}-at-equal-{stage}", sampler.name()), gain, 1.0);
+                report.claims.push(claim.because(
+                    "A path of this scene takes a microsecond, beside which the numbers are dear: radical inverses in large bases double its time. \
+                     At equal samples it gains.",
+                ));
             }
         }
     }

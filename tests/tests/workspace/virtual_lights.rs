@@ -44,9 +44,9 @@ fn by_path(test: &str, scene: ReferenceScene, effort: Effort) -> Truth {
     Truth::new(&SUITE, test, scene, &path(), effort)
 }
 
-/// Every threshold, hard and soft, with light paths of one's own and shared; in the long form these two in turn.
+/// Every threshold, hard and soft, with light paths of one's own and shared: these two in turn if there are several thresholds.
 fn equal_everywhere(truth: &Truth, thresholds: &[f32]) {
-    let both = is_quick(truth.effort);
+    let both = thresholds.len() == 1;
     for (k, &threshold) in thresholds.iter().enumerate() {
         for partition in [PartitionName::Hard, PartitionName::Soft] {
             for interleaved in [true, false].into_iter().filter(|&shared| both || shared == (k % 2 == 0)) {
