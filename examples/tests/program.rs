@@ -133,6 +133,21 @@ fn the_command_line_fixes_the_image() {
     assert_eq!(pixels("e.exr", &["--estimator", "direct"]), pixels("d.exr", &["--max-depth", "2"]));
 }
 
+/// No time, no name, no order of chance is in a file: the same command writes the same bytes.
+#[test]
+fn the_command_line_fixes_the_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = |more: &[&str]| {
+        succeeds(folder.path(), &tiny(&[&["--out", "a.exr", "--out", "a.png"], more].concat()));
+        ["a.exr", "a.png"].map(|name| fs::read(folder.path().join(name)).unwrap())
+    };
+    for estimator in ["path", "light", "sppm"] {
+        let first = bytes(&["--estimator", estimator, "--threads", "1"]);
+        // Six attributes or more in any order would be the same by chance once in 720 times.
+        (0..3).for_each(|_| assert!(bytes(&["--estimator", estimator, "--threads", "2"]) == first, "{estimator}"));
+    }
+}
+
 /// The options of light paths change the image, and what makes no sense is refused.
 #[test]
 fn light_paths_have_options() {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use scene_core::film::LayeredImage;
 
+use super::exr_header::sort_attributes;
 use super::{OutputError, write_atomically};
 
 /// Formats that images are written in.
@@ -31,15 +32,17 @@ impl ImageFormat {
 }
 
 /// Writes an image [atomically](write_atomically), in the format of the file's name. A PNG is brightened by `exposure`
-/// stops, an EXR is written as it is.
+/// stops, an EXR is written as it is. The same image is the same bytes: no time and no name of a machine is in them, and attributes
+/// are in the order of their names.
 ///
 /// # Errors
 /// [`OutputError`], which names the file.
 pub fn save_image(path: &Path, image: &LayeredImage, exposure: f32) -> Result<(), OutputError> {
-    let bytes = match ImageFormat::of(path)? {
+    let mut bytes = match ImageFormat::of(path)? {
         ImageFormat::Exr => image.encode_exr(),
         ImageFormat::Png => image.encode_png(exposure),
     }
     .map_err(|error| OutputError::encode(path, error))?;
+    sort_attributes(&mut bytes);
     write_atomically(path, |file| file.write_all(&bytes))
 }

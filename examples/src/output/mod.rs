@@ -10,6 +10,7 @@
 mod atomic;
 mod checkpoint;
 mod display;
+mod exr_header;
 mod image_file;
 mod interrupt;
 mod progress;
