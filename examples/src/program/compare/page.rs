@@ -121,7 +121,8 @@ impl Found<'_> {
         plot.html()
     }
 
-    /// The reference's own error counts as an error of whatever is compared with it.
+    /// The reference's own error counts as an error of whatever is compared with it: the expectation of `(x - r)^2` is that of
+    /// `(x - E[r])^2` and the variance of `r`. The variance in the file is an estimate, neither a bound from above nor from below.
     fn reference_note(&self, level: usize) -> Markup {
         let own = relative_standard_error(&self.reference.image).powi(2);
         let errors = self.measured.iter().map(|of_entry| Estimate::of_mean(&of_entry[level].errors).value);
@@ -129,11 +130,27 @@ impl Found<'_> {
         html! {
             @if own.is_finite() && smallest.is_finite() {
                 p class=[(own > SUSPICIOUS * smallest).then_some("notice")] {
-                    "By its own variance, the reference contributes at most about " (format!("{own:.1e}")) " to each of these errors"
-                    @if own > SUSPICIOUS * smallest { ", which is much beside the smallest of them: more samples (--reference-spp) would help" } "."
+                    "The reference is noisy, too: about " (format!("{own:.1e}")) " of each of these errors is the reference's own, " (percent(own / smallest))
+                    " of the smallest one"
+                    @if own > SUSPICIOUS * smallest { "; with more samples (--reference-spp) it would be less" }
+                    ". That is estimated from the scatter of its samples as if they were independent: too much for those of a good sequence, and without what none "
+                    "of them has found."
                 }
+            } @else if !own.is_finite() {
+                p { "How much of these errors is noise of the reference is not known: it has no variances." }
             }
         }
+    }
+}
+
+/// A share with two digits.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        0.0..0.01 => "less than 0.01 %".to_owned(),
+        0.01..1.0 => format!("{percent:.2} %"),
+        1.0..10.0 => format!("{percent:.1} %"),
+        _ => format!("{percent:.0} %"),
     }
 }
 
@@ -167,6 +184,15 @@ fn list(names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shares_have_two_digits() {
+        for (share, text) in
+            [(0.0, "less than 0.01 %"), (0.00123, "0.12 %"), (0.0456, "4.6 %"), (0.25, "25 %"), (3.0, "300 %")]
+        {
+            assert_eq!(percent(share), text);
+        }
+    }
 
     #[test]
     fn lists_read_like_lists() {
