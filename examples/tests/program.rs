@@ -12,7 +12,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use command::{assert_same_image, fails, image, lichtwerk, names, run, succeeds, text};
-use lichtwerk::output::Checkpoint;
+use lichtwerk::output::{Checkpoint, save_image};
 use scene_core::film::LayeredImage;
 use tempfile::TempDir;
 
@@ -705,6 +705,35 @@ fn images_are_merged_once_and_with_their_like() {
         &["c.exr: its scene is 'furnace-box'", "a.exr"],
     );
     fails(folder.path(), &["merge", "a.exr", "d.exr", "--out", "e.exr"], &["d.exr: its maxDepth is '2'"]);
+    // Images of other programs, or what was made of ours by them.
+    let change = |name: &str, change: &dyn Fn(&LayeredImage) -> LayeredImage| {
+        save_image(&folder.path().join(name), &change(&image(folder.path(), "b.exr")), 0.0).unwrap();
+    };
+    let bare = |image: &LayeredImage| {
+        let mut bare = LayeredImage::new(image.width(), image.height()).unwrap();
+        image.channels().for_each(|(name, values)| bare.set_channel(name, values.to_vec()).unwrap());
+        bare
+    };
+    change("uncounted.exr", &bare);
+    change("small.exr", &|_| {
+        let mut small = LayeredImage::new(4, 3).unwrap();
+        small.set_rgb(&[[0.5; 3]; 12]).unwrap();
+        small
+    });
+    change("more.exr", &|image| {
+        let mut more = bare(image);
+        more.set_channel("More.Y", vec![0.5; 48]).unwrap();
+        more
+    });
+    for (other, told) in [
+        ("uncounted.exr", "uncounted.exr: it does not tell how many samples"),
+        ("small.exr", "small.exr: it has 4 x 3 pixels, and a.exr has 8 x 6"),
+        ("more.exr", "more.exr: it has a channel 'More.Y', and a.exr has none"),
+    ] {
+        fails(folder.path(), &["merge", "a.exr", other, "--out", "e.exr"], &[told]);
+    }
+    fails(folder.path(), &["merge", "a.exr", "b.png", "--out", "e.exr"], &["b.png: of a PNG nothing is left"]);
+    fails(folder.path(), &["merge", "more.exr", "a.exr", "--out", "e.exr"], &["a.exr: it has no channel 'More.Y'"]);
     succeeds(folder.path(), &["merge", "a.exr", "b.exr", "--out", "e.exr"]);
     fails(folder.path(), &["merge", "a.exr", "nowhere.exr", "--out", "e.exr"], &["nowhere.exr"]);
 }

@@ -349,6 +349,9 @@ pub(super) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.checkpoint {
         check_writable(path)?;
     }
+    if let Some(path) = arguments.parts.iter().find(|path| matches!(ImageFormat::of(path), Ok(ImageFormat::Png))) {
+        return Err(named(path, &"of a PNG nothing is left to be merged: give EXR images or checkpoints"));
+    }
     let is_image = |path: &PathBuf| ImageFormat::of(path).is_ok();
     let image = match arguments.parts.iter().filter(|path| is_image(path)).count() {
         0 => merged_checkpoints(arguments)?,
@@ -375,7 +378,13 @@ fn merged_images(paths: &[PathBuf]) -> Result<LayeredImage, Failure> {
     let all: Vec<_> = paths.iter().zip(&images).collect();
     check_alike(&all)?;
     let samples = samples_of(&all)?;
-    let mut merged = LayeredImage::merge(&images)?;
+    let mut merged = LayeredImage::merge(&images).map_err(|error| match error {
+        LayeredImageError::NoSampleCount(index) => named(
+            &paths[index],
+            &"it does not tell how many samples per pixel it has (attribute 'spp'), by which images are weighed",
+        ),
+        error => error.into(),
+    })?;
     if let Some(samples) = samples {
         let _ = merged.set_attribute(SAMPLES, ranges(&samples));
     }
@@ -390,6 +399,17 @@ fn text(image: &LayeredImage, key: &str) -> Option<String> {
 fn check_alike(all: &[(&PathBuf, &LayeredImage)]) -> Result<(), Failure> {
     let Some((first_path, first)) = all.first() else { return Ok(()) };
     for (path, image) in all {
+        let refuse = |what: String| Err(named(path, &format!("it {what}")));
+        let [[a, b], [c, d]] = [first, image].map(|image| [image.width(), image.height()]);
+        if [a, b] != [c, d] {
+            return refuse(format!("has {c} x {d} pixels, and {} has {a} x {b}", first_path.display()));
+        }
+        if let Some((name, _)) = first.channels().find(|(name, _)| image.channel(name).is_none()) {
+            return refuse(format!("has no channel '{name}', as {} has", first_path.display()));
+        }
+        if let Some((name, _)) = image.channels().find(|(name, _)| first.channel(name).is_none()) {
+            return refuse(format!("has a channel '{name}', and {} has none", first_path.display()));
+        }
         for key in SAME {
             let (one, other) = (text(first, key), text(image, key));
             if one.is_some() && other.is_some() && one != other {
