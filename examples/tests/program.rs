@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-use command::{assert_same_image, fails, image, lichtwerk, names, run, succeeds, text};
+use command::{answer, assert_same_image, fails, image, lichtwerk, names, run, succeeds, text};
 use lichtwerk::output::{Checkpoint, save_image};
 use scene_core::film::LayeredImage;
 use tempfile::TempDir;
@@ -95,11 +95,16 @@ fn render_writes_images_and_stats_and_says_nothing_in_a_pipe() {
         ]
         .concat();
         documented.extend(["ranks", "gathered_bytes", "received_bytes"]);
+        documented.extend(["heuristic", "lights", "sampler", "seed", "max_depth", "path_filter", "renderer"]);
         documented.sort_unstable();
         assert_eq!(keys, documented);
         assert_eq!((&stats["scene"], &stats["estimator"]), (&"cornell-box".into(), &estimator.into()));
         assert_eq!((&stats["width"], &stats["height"], &stats["spp"]), (&8.into(), &6.into(), &1.into()));
         assert_eq!(stats["threads"], 2);
+        for (key, attribute) in [("heuristic", "heuristic"), ("sampler", "sampler"), ("renderer", "renderer")] {
+            assert_eq!(stats[key].as_str(), image.attribute(attribute).map(ToString::to_string).as_deref(), "{key}");
+        }
+        assert_eq!((&stats["seed"], &stats["max_depth"], &stats["lights"]), (&0.into(), &(-1).into(), &"power".into()));
         // Light paths whose splats are on the film count: as many as there are pixels, or those of a tile.
         let light_paths = match estimator {
             "light" => 48,
@@ -117,6 +122,25 @@ fn without_a_name_images_go_to_out() {
     let folder = tempfile::tempdir().unwrap();
     succeeds(folder.path(), &tiny(&[]));
     assert_eq!(names(&folder.path().join("out")), ["cornell-box.exr", "cornell-box.png"]);
+}
+
+/// What was asked for is in the numbers, which may go to standard output.
+#[test]
+fn stats_tell_the_settings_in_a_pipe_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = ["--heuristic", "balance", "--sampler", "lattice", "--seed", "18446744073709551615"];
+    let more = ["--max-depth", "3", "--lights", "uniform", "--out", "a.exr", "--stats", "-"];
+    let stats: serde_json::Value =
+        serde_json::from_str(&answer(folder.path(), &tiny(&[&settings[..], &more].concat()))).unwrap();
+    assert_eq!((&stats["heuristic"], &stats["sampler"]), (&"balance".into(), &"lattice".into()));
+    assert_eq!((&stats["seed"], &stats["max_depth"]), (&u64::MAX.into(), &3.into()));
+    assert_eq!((&stats["lights"], &stats["path_filter"]), (&"uniform".into(), &serde_json::Value::Null));
+    let filtered = answer(folder.path(), &tiny(&["--filter", "psf", "--out", "b.exr", "--stats", "-"]));
+    let filtered: serde_json::Value = serde_json::from_str(&filtered).unwrap();
+    assert!(filtered["path_filter"].as_str().unwrap().starts_with("Psf "), "{filtered}");
+    let numbers = answer(folder.path(), &["diff", "a.exr", "b.exr", "--json", "-"]);
+    assert!(serde_json::from_str::<serde_json::Value>(&numbers).unwrap()["mse"].as_f64().unwrap() > 0.0);
+    assert_eq!(names(folder.path()), ["a.exr", "b.exr"]);
 }
 
 #[test]

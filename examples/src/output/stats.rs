@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{OutputError, write_atomically};
 
-/// What `--stats FILE.json` holds, under these very keys, so that scripts never parse what is printed for people.
+/// What `--stats FILE.json` holds, under these very keys, so that scripts never parse what is printed for people: the settings that
+/// the image has among its attributes, and what the rendering took.
 ///
 /// ```
 /// use lichtwerk::output::RenderStats;
@@ -23,6 +24,20 @@ pub struct RenderStats {
     pub scene: String,
     /// Name of the estimator.
     pub estimator: String,
+    /// How next event estimation and scattering are combined.
+    pub heuristic: String,
+    /// How the emitter is chosen.
+    pub lights: String,
+    /// Where the random numbers come from.
+    pub sampler: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Segments per path; -1 is unlimited.
+    pub max_depth: i64,
+    /// The path space filter with its settings; nothing without one.
+    pub path_filter: Option<String>,
+    /// Name and version of the program.
+    pub renderer: String,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -87,6 +102,13 @@ mod tests {
         let mut documented = [
             "scene",
             "estimator",
+            "heuristic",
+            "lights",
+            "sampler",
+            "seed",
+            "max_depth",
+            "path_filter",
+            "renderer",
             "width",
             "height",
             "spp",

@@ -129,7 +129,7 @@ pub struct RenderArguments {
     /// Exposure of PNG files, in stops: 1 is twice as bright.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,
-    /// File for time, rays and memory, as JSON.
+    /// File for settings, time, rays and memory, as JSON; `-` is standard output.
     #[arg(long)]
     pub stats: Option<PathBuf>,
     /// File for the exact state of the rendering: written now and then and at the end; if it is there, the rendering goes on from it.
@@ -242,8 +242,8 @@ pub struct DiffArguments {
     pub image: PathBuf,
     /// The image that is taken for the truth.
     pub reference: PathBuf,
-    /// Also write the numbers to this file, as JSON.
-    #[arg(long)]
+    /// Also write the numbers to this file, as JSON; `-` is standard output, which then has nothing else.
+    #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 }
 

@@ -4,11 +4,11 @@ use scene_core::film::Film;
 use serde::{Deserialize, Serialize};
 
 use super::RenderArguments;
+use super::filtered::PATH_FILTER;
 use super::parts::Part;
 use crate::distributed::{Portable, Traffic};
 use crate::output::{Checkpoint, CheckpointError, RenderStats, peak_bytes};
 use crate::render::Rendering;
-use clap::ValueEnum;
 
 /// Samples, and what they took.
 pub(super) struct Done {
@@ -60,9 +60,19 @@ impl Done {
     pub(super) fn stats(&self, arguments: &RenderArguments, traffic: Traffic) -> RenderStats {
         let (width, height, described) = (self.film().width(), self.film().height(), &self.checkpoint.described);
         let Cost { ranks, threads, seconds, load_seconds, peak_bytes, .. } = self.cost;
+        // As the image tells them.
+        let setting = |key: &str| described.attributes.get(key).cloned();
+        let name = |key: &str| setting(key).unwrap_or_default();
         RenderStats {
             scene: arguments.scene.clone(),
-            estimator: arguments.estimator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
+            estimator: name("estimator"),
+            heuristic: name("heuristic"),
+            lights: name("lights"),
+            sampler: name("sampler"),
+            seed: arguments.seed,
+            max_depth: name("maxDepth").parse().unwrap_or(-1),
+            path_filter: setting(PATH_FILTER),
+            renderer: name("renderer"),
             width,
             height,
             spp: described.count(),

@@ -16,9 +16,11 @@ mod prepare;
 mod render;
 mod showcase;
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{CommandFactory, FromArgMatches};
+use serde::Serialize;
 
 pub use arguments::{
     Arguments, Command, CompareArguments, DiffArguments, ExperimentArguments, FramesArguments, MergeArguments,
@@ -30,6 +32,7 @@ pub use parts::Shard;
 pub use render::{EstimatorName, RenderSettings, estimate, estimate_in, render_to_image};
 
 use crate::distributed::{self, Ranks, StartError, launched_rank};
+use crate::output::{check_writable, write_json};
 pub use crate::samplers::SamplerName;
 
 /// Why a subcommand failed: one line for the user.
@@ -122,6 +125,30 @@ fn report(line: &str) {
 fn tell(line: &str) {
     use std::io::Write;
     let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// Whether a file is called as standard output is.
+fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Finds out now whether [`write_numbers`] will be able to write.
+///
+/// # Errors
+/// If the file cannot be written.
+fn check_numbers(path: &Path) -> Result<(), Failure> {
+    if is_standard_output(path) { Ok(()) } else { Ok(check_writable(path)?) }
+}
+
+/// Numbers as JSON, to a file or, if it is called `-`, to standard output.
+///
+/// # Errors
+/// When they cannot be written.
+fn write_numbers(path: &Path, numbers: &impl Serialize) -> Result<(), Failure> {
+    if is_standard_output(path) {
+        return print(&serde_json::to_string_pretty(numbers)?);
+    }
+    Ok(write_json(path, numbers)?)
 }
 
 /// Text to standard output.

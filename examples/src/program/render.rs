@@ -16,7 +16,7 @@ use super::done::Done;
 use super::filtered::PATH_FILTER;
 use super::finish::{Finish, Plain, Run};
 use super::parts::{Part, described, develop, image_of};
-use super::{Failure, RenderArguments, Told, filtered, find_ranks, report, tell};
+use super::{Failure, RenderArguments, Told, check_numbers, filtered, find_ranks, report, tell, write_numbers};
 use crate::choices::{AnyChoice, AnyHeuristic, AnyPathHeuristic, LightSelection};
 use crate::distributed::{Ranks, RanksError};
 use crate::estimators::{
@@ -26,7 +26,7 @@ use crate::estimators::{
 use crate::filters::{FilterSettings, PathFilterName};
 use crate::light_paths::LightPathSettings;
 use crate::light_photons::{LightPhotonSettings, LightPhotonsError};
-use crate::output::{Display, ImageFormat, Interrupt, Progress, check_writable, save_image, write_json};
+use crate::output::{Display, ImageFormat, Interrupt, Progress, check_writable, save_image};
 use crate::photons::{PathLimits, PhotonSettings};
 use crate::render::{Budget, Observe, PassContext, Progress as Pass, RenderError, Rendering, Shared, thread_pool};
 use crate::resampling::{AnyDirect, DirectName, ResamplingSettings};
@@ -513,7 +513,7 @@ fn prepare(arguments: &RenderArguments, ranks: &Ranks) -> Result<Prepared, Failu
             check_writable(path)?;
         }
         if let Some(path) = &arguments.stats {
-            check_writable(path)?;
+            check_numbers(path)?;
         }
     }
 
@@ -567,7 +567,7 @@ fn run_with(ranks: &Ranks, arguments: &RenderArguments) -> Result<(), Failure> {
         save_image(path, &image, arguments.exposure)?;
     }
     if let Some(path) = &arguments.stats {
-        write_json(path, &done.stats(arguments, ranks.traffic()))?;
+        write_numbers(path, &done.stats(arguments, ranks.traffic()))?;
     }
     if std::io::stderr().is_terminal() {
         report(&summary(&outputs, &done));
