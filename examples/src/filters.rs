@@ -8,6 +8,7 @@ use path_space_filter::{
 use scene_core::Sensor;
 
 use crate::filtering::{Alike, AlikeKey, AnyFilter, AnyModulation, Selection, SelectionError, samples_in_memory};
+use crate::values::{not_negative, real, real_where, whole};
 
 /// The implementations of path space filtering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -67,37 +68,37 @@ pub enum FilterError {
 #[command(next_help_heading = "Path space filter")]
 pub struct FilterSettings {
     /// Side of the square of pixels that is as large as the disk which is averaged over, in the first batch.
-    #[arg(long, value_name = "PIXELS", default_value_t = 3.0)]
+    #[arg(long, value_name = "PIXELS", default_value_t = 3.0, value_parser = not_negative(3.0))]
     pub filter_radius: f32,
     /// Radius of that disk in units of the scene, everywhere the same, in place of pixels.
-    #[arg(long, value_name = "LENGTH", conflicts_with = "filter_radius")]
+    #[arg(long, value_name = "LENGTH", conflicts_with = "filter_radius", value_parser = not_negative(0.1))]
     pub filter_length: Option<f32>,
     /// How fast the radius shrinks: with this power of the number of the batch.
-    #[arg(long, value_name = "ALPHA", default_value_t = 0.25)]
+    #[arg(long, value_name = "ALPHA", default_value_t = 0.25, value_parser = real_where::<f32>("a number between 0 and 1", 0.25, |alpha| *alpha > 0.0 && *alpha < 1.0))]
     pub filter_exponent: f32,
     /// How often averages are averaged.
-    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = whole::<u32>(0..=1 << 10, 2))]
     pub filter_iterations: u32,
     /// Samples per pixel that are averaged together [default: as many as the memory holds, up to 16].
-    #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u64).range(1..=4096))]
+    #[arg(long, value_name = "SPP", value_parser = whole::<u64>(1..=4096, 16))]
     pub filter_batch: Option<u64>,
     /// Memory for a batch, in MiB.
-    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    #[arg(long, value_name = "MIB", default_value_t = 1024, value_parser = whole::<u64>(0..=1 << 32, 1024))]
     pub filter_memory: u64,
     /// Least cosine between normals that are alike; -1 is any. With psf-hash any value above -1 rounds the components of normals to halves.
-    #[arg(long, value_name = "COSINE", default_value_t = 0.95, allow_negative_numbers = true)]
+    #[arg(long, value_name = "COSINE", default_value_t = 0.95, allow_negative_numbers = true, value_parser = cosine())]
     pub filter_normals: f32,
     /// Largest distance between albedos in RGB that are alike, 0 to 1.7 [default: any, since colours are taken out of the average].
-    #[arg(long, value_name = "DIFFERENCE")]
+    #[arg(long, value_name = "DIFFERENCE", value_parser = not_negative(0.1))]
     pub filter_albedo: Option<f32>,
     /// Average contributions as they are, colours included.
     #[arg(long)]
     pub filter_as_stored: bool,
     /// Least cosine between directions to the camera that are alike [default: any].
-    #[arg(long, value_name = "COSINE", allow_negative_numbers = true)]
+    #[arg(long, value_name = "COSINE", allow_negative_numbers = true, value_parser = cosine())]
     pub filter_view: Option<f32>,
     /// Largest difference between the lengths of rays into the hemisphere that are alike, in units of the scene [default: any].
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", value_parser = not_negative(0.1))]
     pub filter_hit_distance: Option<f32>,
     /// Largest difference in time of vertices that are alike: [`View::time`](crate::filtering::View::time). One image has one time.
     #[arg(skip)]
@@ -106,17 +107,22 @@ pub struct FilterSettings {
     #[arg(long)]
     pub filter_visibility: bool,
     /// Least roughness of the surfaces at which paths are averaged: 0.5 is diffuse.
-    #[arg(long, value_name = "ROUGHNESS", default_value_t = 0.05)]
+    #[arg(long, value_name = "ROUGHNESS", default_value_t = 0.05, value_parser = real::<f32>(0.0..=0.5, 0.05))]
     pub filter_roughness: f32,
     /// Vertices of a path that are averaged, at most.
-    #[arg(long, value_name = "COUNT", default_value_t = 1)]
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = whole::<u32>(1..=1 << 16, 2))]
     pub filter_vertices: u32,
     /// More camera samples for each sample, without light paths of their own: anti-aliasing by averages of others.
-    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = whole::<u32>(0..=1 << 16, 3))]
     pub filter_extra: u32,
     /// How neighbours are found.
     #[arg(long, value_enum, value_name = "SEARCH", default_value_t)]
     pub filter_search: SearchName,
+}
+
+/// Least cosines between directions that are alike.
+fn cosine() -> impl Fn(&str) -> Result<f32, String> + Clone + Send + Sync + 'static {
+    real_where("a cosine from -1 to less than 1", 0.95, |cosine| (-1.0..1.0).contains(cosine))
 }
 
 /// Samples per pixel of a batch, unless told otherwise.

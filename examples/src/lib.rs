@@ -32,3 +32,4 @@ pub mod render;
 pub mod report;
 pub mod resampling;
 pub mod samplers;
+mod values;

@@ -10,6 +10,7 @@ use vpl_gi::{
 };
 
 use crate::render::Sharing;
+use crate::values::whole;
 
 /// The forms of [`Partition`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -42,7 +43,9 @@ impl PartitionName {
 
 /// Settings of the estimators that connect eye paths to light paths.
 #[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Light paths (robust-igi, instant-radiosity, bdpt)")]
+#[command(
+    next_help_heading = "Virtual point lights and bidirectional path tracing (robust-igi, instant-radiosity, bdpt)"
+)]
 pub struct LightPathSettings {
     /// Threshold of the geometry term: a number in units of 1/R^2, with the radius R of the scene; or `abs:T` in 1/length^2;
     /// `inf` is allowed [default: 100, and inf for instant-radiosity].
@@ -53,19 +56,19 @@ pub struct LightPathSettings {
     #[arg(long, value_enum, default_value_t)]
     pub partition: PartitionName,
     /// Light paths that a sample is connected to.
-    #[arg(long, default_value_t = DEFAULT_LIGHT_PATHS, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "COUNT", default_value_t = DEFAULT_LIGHT_PATHS, value_parser = whole::<u32>(1..=1 << 24, 32))]
     pub light_paths: u32,
     /// Tile of pixels with different light paths, shared by all tiles; `none` gives every sample its own.
-    #[arg(long, default_value = "3x3", value_parser = parse_interleave)]
+    #[arg(long, value_name = "TILE", default_value = "3x3", value_parser = parse_interleave)]
     pub interleave: Interleave,
     /// Shadow rays: `all`, `sampled:N` by contribution, or `ordered:TOLERANCE`, the brightest first.
     #[arg(long, default_value = "all", value_parser = parse_shadow_rays)]
     pub shadow_rays: ShadowRays,
     /// Shadow rays per eye path (bdpt), for connections chosen by resampling [default: one for each connection].
-    #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=1 << 10))]
+    #[arg(long, value_name = "RAYS", value_parser = whole::<u32>(1..=1 << 10, 4))]
     pub resampled_connections: Option<u32>,
     /// Final gathering with this number of rays; 0 is none.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
+    #[arg(long, default_value_t = 0, value_parser = whole::<u32>(0..=1 << 16, 8))]
     pub gather: u32,
     /// Threshold the geometry term alone, as the paper does: glossy surfaces then show bright spots. Otherwise the peaks of
     /// scattering functions count as well.
@@ -191,7 +194,10 @@ fn parse_threshold(text: &str) -> Result<Threshold, String> {
     };
     match number.parse::<f32>() {
         Ok(value) if value >= 0.0 => Ok(make(value)),
-        _ => Err("expected a number that is not negative, 'inf', or 'abs:' and such a number".to_owned()),
+        _ => {
+            Err("expected a number that is not negative, as in 100, 'inf', or 'abs:' and such a number, as in abs:0.5"
+                .to_owned())
+        }
     }
 }
 
@@ -204,12 +210,14 @@ fn parse_interleave(text: &str) -> Result<Interleave, String> {
         Some((x, y)) if (1..=64).contains(&x) && (1..=64).contains(&y) => {
             Interleaved::new(x, y).map(Some).map_err(|error| error.to_string())
         }
-        _ => Err("expected 'none' or COLUMNSxROWS, each from 1 to 64".to_owned()),
+        _ => Err("expected 'none' or COLUMNSxROWS, each from 1 to 64, as in 3x3".to_owned()),
     }
 }
 
 fn parse_shadow_rays(text: &str) -> Result<ShadowRays, String> {
-    let reason = || "expected 'all', 'sampled:N' with N at least 1, or 'ordered:TOLERANCE'".to_owned();
+    let reason = || {
+        "expected 'all', 'sampled:N' with N at least 1, as in sampled:4, or 'ordered:TOLERANCE' with a tolerance from 0 to less than 1, as in ordered:0.1".to_owned()
+    };
     match text.split_once(':') {
         None if text == "all" => Ok(ShadowRays::All),
         Some(("sampled", count)) => match count.parse::<u32>() {

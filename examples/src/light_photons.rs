@@ -3,6 +3,8 @@
 use clap::{Args, ValueEnum};
 use photon_map::{Allocation, GatherError, LightTableError, MapError, SelectionError};
 
+use crate::values::{real, whole};
+
 /// What shadow rays are shared out by, among the lights that contribute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum ImportanceName {
@@ -41,20 +43,20 @@ impl AllocationName {
 #[command(next_help_heading = "Light selection by photons (direct, path with --lights photons)")]
 pub struct LightPhotonSettings {
     /// Photons that are traced before rendering [default: 100 per light, at least 50,000 and at most 4,000,000].
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1 << 28))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u32>(1..=1 << 28, 50_000))]
     pub light_photons: Option<u32>,
     /// How many of the nearest photons within the radius tell which lights contribute, from 2; `all` of them are found sooner.
     #[arg(long, value_name = "COUNT", default_value = "all", value_parser = parse_nearest)]
     pub light_nearest: Nearest,
     /// How far photons are looked for, in units of the scene [default: as far as 32 photons reach where photons are usual; three times as far
     /// for a number of nearest ones].
-    #[arg(long, value_name = "RADIUS", allow_negative_numbers = true, value_parser = parse_radius)]
+    #[arg(long, value_name = "RADIUS", allow_negative_numbers = true, value_parser = real::<f32>(1e-12..=1e15, 0.5))]
     pub light_radius: Option<f32>,
     /// Shadow rays at each vertex for the lights that contribute.
-    #[arg(long, value_name = "RAYS", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1 << 12))]
+    #[arg(long, value_name = "RAYS", default_value_t = 1, value_parser = whole::<u32>(1..=1 << 12, 1))]
     pub contributing_rays: u32,
     /// Shadow rays for all other lights. 0 is biased: light that the photons missed is lost.
-    #[arg(long, value_name = "RAYS", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=1 << 12))]
+    #[arg(long, value_name = "RAYS", default_value_t = 1, value_parser = whole::<u32>(0..=1 << 12, 1))]
     pub other_rays: u32,
     /// What shadow rays are shared out by, among the lights that contribute.
     #[arg(long, value_enum, default_value_t)]
@@ -125,14 +127,7 @@ fn parse_nearest(text: &str) -> Result<Nearest, String> {
     match text.parse::<usize>() {
         Ok(count @ 2..=65_536) => Ok(Some(count)),
         _ if text == "all" => Ok(None),
-        _ => Err("expected a number from 2 to 65536, or `all`".to_owned()),
-    }
-}
-
-fn parse_radius(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(radius) if (1e-12..=1e15).contains(&radius) => Ok(radius),
-        _ => Err("expected a number from 1e-12 to 1e15".to_owned()),
+        _ => Err("expected a whole number from 2 to 65536, as in 32, or `all`".to_owned()),
     }
 }
 
@@ -144,8 +139,6 @@ mod tests {
     fn names_are_parsed() {
         assert_eq!((parse_nearest("all"), parse_nearest("2")), (Ok(None), Ok(Some(2))));
         assert!(["", "0", "1", "-3", "1.5", "65537", "ALL"].iter().all(|text| parse_nearest(text).is_err()));
-        assert_eq!(parse_radius("0.5"), Ok(0.5));
-        assert!(["", "0", "-1", "nan", "inf", "1e30"].iter().all(|text| parse_radius(text).is_err()));
     }
 
     #[test]

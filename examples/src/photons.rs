@@ -14,6 +14,7 @@ use crate::estimators::{
     Sharpness, Unguided, VirtualLights, WithCaustics,
 };
 use crate::render::Shared;
+use crate::values::{real, real_where, whole};
 
 /// How the photons of a map are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -98,7 +99,7 @@ impl Radius {
 #[command(next_help_heading = "Photon maps (photon-map, sppm, robust-igi --caustics)")]
 pub struct PhotonSettings {
     /// Light paths: of the maps of photon-map, of each pass (one sample per pixel) otherwise.
-    #[arg(long, default_value_t = DEFAULT_PATHS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    #[arg(long, default_value_t = DEFAULT_PATHS, value_parser = whole::<u64>(1..=1 << 32, DEFAULT_PATHS))]
     pub photons: u64,
     /// Radius of density estimation: a number in units of the scene's radius, or `abs:R` in units of length. With
     /// --nearest the largest
@@ -109,24 +110,24 @@ pub struct PhotonSettings {
     #[arg(long, default_value = "0.004", value_parser = parse_radius)]
     pub caustic_radius: Radius,
     /// Look as far as this number of photons [default: the radius is fixed].
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(2..=1 << 20))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u32>(2..=1 << 20, 50))]
     pub nearest: Option<u32>,
     /// How photons at a distance count.
     #[arg(long, value_enum, default_value_t)]
     pub kernel: KernelName,
     /// Part of the photons that are not caustic which is kept (photon-map): with 0.05, and 20 times as many --photons, the
     /// caustic map grows by 20 and the global map stays as large.
-    #[arg(long, default_value_t = 1.0, value_parser = parse_share)]
+    #[arg(long, default_value_t = 1.0, value_parser = real::<f64>(LEAST_SHARE..=1.0, 0.05))]
     pub global_ratio: f64,
     /// How the part that the global map keeps is chosen.
     #[arg(long, value_enum, default_value_t)]
     pub partition_variant: PartitionVariant,
     /// Bounces up to this roughness are sharp: eye paths follow them, and photons after them are caustic. 0: mirrors
     /// and glass alone; diffuse is 0.5.
-    #[arg(long, default_value_t = DEFAULT_ROUGHNESS, value_parser = parse_roughness)]
+    #[arg(long, default_value_t = DEFAULT_ROUGHNESS, value_parser = real::<f32>(0.0..=0.45, DEFAULT_ROUGHNESS))]
     pub caustic_roughness: f32,
     /// Rays of final gathering at each eye vertex (photon-map); 0 looks at the global map directly.
-    #[arg(long, default_value_t = DEFAULT_RAYS, value_parser = clap::value_parser!(u32).range(0..=1 << 16))]
+    #[arg(long, default_value_t = DEFAULT_RAYS, value_parser = whole::<u32>(0..=1 << 16, DEFAULT_RAYS))]
     pub gather_rays: u32,
     /// Which photons are kept (photon-map).
     #[arg(long, value_enum, default_value_t)]
@@ -135,22 +136,22 @@ pub struct PhotonSettings {
     #[arg(long, value_enum, default_value_t)]
     pub guide: GuideName,
     /// The share of emitters and directions that --guide chooses: less than 1, so that all light is found.
-    #[arg(long, default_value_t = DEFAULT_GUIDE_SHARE, value_parser = parse_guide_share)]
+    #[arg(long, default_value_t = DEFAULT_GUIDE_SHARE, value_parser = real_where::<f64>("a number from 0 to less than 1", DEFAULT_GUIDE_SHARE, |share| (0.0..1.0).contains(share)))]
     pub guide_share: f64,
     /// Paths from the sensor for --deposition importance and for --guide.
-    #[arg(long, default_value_t = DEFAULT_IMPORTONS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    #[arg(long, default_value_t = DEFAULT_IMPORTONS, value_parser = whole::<u64>(1..=1 << 32, DEFAULT_IMPORTONS))]
     pub importons: u64,
     /// Radius in which importons (what paths from the sensor leave, as paths from lights leave photons) are looked for: as --photon-radius.
     #[arg(long, default_value = "0.03", value_parser = parse_radius)]
     pub importon_radius: Radius,
     /// The least probability to keep a photon, epsilon of Keller and Wald 2000: unbiased if it is positive.
-    #[arg(long, default_value_t = DEFAULT_FLOOR, value_parser = parse_share)]
+    #[arg(long, default_value_t = DEFAULT_FLOOR, value_parser = real::<f64>(LEAST_SHARE..=1.0, DEFAULT_FLOOR))]
     pub deposition_floor: f64,
     /// Keep nothing below that probability: biased.
     #[arg(long)]
     pub deposition_cutoff: bool,
     /// By how little the radius shrinks (sppm): variance falls as n^-alpha, bias as n^(alpha-1).
-    #[arg(long, default_value_t = DEFAULT_ALPHA, value_parser = parse_alpha)]
+    #[arg(long, default_value_t = DEFAULT_ALPHA, value_parser = real_where::<f64>("a number between 0 and 1", 0.7, |alpha| *alpha > 0.0 && *alpha < 1.0))]
     pub alpha: f64,
     /// Find caustics by a photon map, with robust-igi: eye paths then end at mirrors and glass.
     #[arg(long)]
@@ -164,6 +165,8 @@ const DEFAULT_IMPORTONS: u64 = 100_000;
 const DEFAULT_FLOOR: f64 = 0.01;
 const DEFAULT_GUIDE_SHARE: f64 = 0.5;
 const DEFAULT_ALPHA: f64 = 2.0 / 3.0;
+/// Smaller parts of the photons than this are taken for a mistake.
+const LEAST_SHARE: f64 = 1e-12;
 /// Part of the queries of test paths where photons are not kept for certain.
 const QUANTILE: f64 = 0.05;
 /// Paths whose queries give the scale of importance.
@@ -400,35 +403,7 @@ fn parse_radius(text: &str) -> Result<Radius, String> {
     };
     match number.parse::<f32>() {
         Ok(radius) if radius > 0.0 && radius.is_finite() => Ok(make(radius)),
-        _ => Err("expected a positive number, or 'abs:' and such a number".to_owned()),
-    }
-}
-
-fn parse_share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(share) if (1e-12..=1.0).contains(&share) => Ok(share),
-        _ => Err("expected a number from 1e-12 to 1".to_owned()),
-    }
-}
-
-fn parse_guide_share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
-        _ => Err("expected a number from 0 to less than 1".to_owned()),
-    }
-}
-
-fn parse_roughness(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(roughness) if (0.0..=0.45).contains(&roughness) => Ok(roughness),
-        _ => Err("expected a number from 0 to 0.45".to_owned()),
-    }
-}
-
-fn parse_alpha(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(alpha) if alpha > 0.0 && alpha < 1.0 => Ok(alpha),
-        _ => Err("expected a number between 0 and 1".to_owned()),
+        _ => Err("expected a positive number, as in 0.01, or 'abs:' and such a number, as in abs:0.5".to_owned()),
     }
 }
 
@@ -443,13 +418,19 @@ mod tests {
         for wrong in ["", "0", "-1", "nan", "inf", "abs:", "abs:0", "r"] {
             assert!(parse_radius(wrong).is_err(), "{wrong}");
         }
+        let parse = |option: &str, value: &str| {
+            let command = PhotonSettings::augment_args(clap::Command::new("photons")).no_binary_name(true);
+            command.try_get_matches_from([format!("--{option}={value}")]).map(drop)
+        };
         for wrong in ["0", "1.5", "nan", "-1", ""] {
-            assert!(parse_share(wrong).is_err() && parse_alpha(wrong).is_err(), "{wrong}");
+            for option in ["global-ratio", "deposition-floor", "alpha"] {
+                assert!(parse(option, wrong).is_err(), "--{option}={wrong}");
+            }
         }
-        assert!(parse_alpha("1").is_err() && parse_share("1").is_ok());
-        assert!(parse_guide_share("0") == Ok(0.0) && parse_guide_share("0.99") == Ok(0.99));
-        assert!(["1", "-0.1", "nan", ""].iter().all(|wrong| parse_guide_share(wrong).is_err()));
-        assert!(parse_roughness("0.5").is_err() && parse_roughness("-0").is_ok());
+        assert!(parse("alpha", "1").is_err() && parse("global-ratio", "1").is_ok());
+        assert!(["0", "0.99"].iter().all(|right| parse("guide-share", right).is_ok()));
+        assert!(["1", "-0.1", "nan", ""].iter().all(|wrong| parse("guide-share", wrong).is_err()));
+        assert!(parse("caustic-roughness", "0.5").is_err() && parse("caustic-roughness", "-0").is_ok());
     }
 
     #[test]

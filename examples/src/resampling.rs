@@ -1,5 +1,7 @@
 //! Resampled importance sampling by the names of the command line: of direct light, of directions, between pixels.
 
+use std::ops::RangeInclusive;
+
 use clap::{Args, ValueEnum};
 use qmc_sampling::{Sampler, SamplerFamily};
 use ris::{Budget, CostError};
@@ -11,6 +13,7 @@ use crate::estimators::{
     ResampledScattering, RestirDirect, ScatterSampling, Scattered, ScatteringAlone, SourceMix, TargetName,
     VisibilityProbes, measure_cost,
 };
+use crate::values::{real, whole};
 
 /// How a path finds direct light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -45,7 +48,7 @@ pub enum Candidates {
 
 /// Settings of resampling.
 #[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Resampling (direct, path, restir-direct)")]
+#[command(next_help_heading = "Resampling (direct, path, restir-direct, photon-map, sppm)")]
 pub struct ResamplingSettings {
     /// How direct light is found; `--lights ris` is the same as `--direct ris`.
     #[arg(long, value_enum, default_value_t)]
@@ -59,7 +62,7 @@ pub struct ResamplingSettings {
     pub candidates: Candidates,
     /// Samples of direct light per vertex, each with its shadow ray (for samples per pixel see --spp); a number from 1 that need not be
     /// an integer. With --direct ris, and restir-direct.
-    #[arg(long, default_value_t = 1.0, value_parser = parse_count)]
+    #[arg(long, default_value_t = 1.0, value_parser = real::<f32>(COUNTS, 1.0))]
     pub samples: f32,
     /// How the emitter of a candidate is chosen: `uniform` or `power`.
     #[arg(long, default_value = "power", value_parser = parse_candidate_lights)]
@@ -74,16 +77,16 @@ pub struct ResamplingSettings {
     #[arg(long, value_enum, default_value_t)]
     pub target: TargetName,
     /// Candidates per direction with `--bsdf-sampling ris`.
-    #[arg(long, default_value_t = 8.0, value_parser = parse_count)]
+    #[arg(long, default_value_t = 8.0, value_parser = real::<f32>(COUNTS, 8.0))]
     pub bsdf_candidates: f32,
     /// Rounds in which pixels take over samples of their neighbours, with `restir-direct`.
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=8))]
+    #[arg(long, default_value_t = 3, value_parser = whole::<u32>(0..=8, 3))]
     pub reuse_rounds: u32,
     /// Neighbours per round.
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, default_value_t = 3, value_parser = whole::<u32>(1..=64, 3))]
     pub reuse_neighbours: u32,
     /// How far away neighbours may be, in pixels.
-    #[arg(long, default_value_t = 10.0, value_parser = parse_count)]
+    #[arg(long, default_value_t = 10.0, value_parser = real::<f32>(COUNTS, 10.0))]
     pub reuse_radius: f32,
     /// Choose among the samples of neighbours without regard to visibility: no shadow ray for each of them, more noise where something occludes.
     #[arg(long)]
@@ -182,25 +185,21 @@ impl ResamplingSettings {
     }
 }
 
-fn parse_count(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(count) if (1.0..=1e6).contains(&count) => Ok(count),
-        _ => Err("expected a number from 1 to 1000000".to_owned()),
-    }
-}
+/// Numbers of candidates and samples.
+const COUNTS: RangeInclusive<f32> = 1.0..=1e6;
 
 fn parse_candidate_lights(text: &str) -> Result<LightSelection, String> {
     match text {
         "uniform" => Ok(LightSelection::Uniform),
         "power" => Ok(LightSelection::Power),
-        _ => Err("candidates are chosen by 'uniform' or 'power'".to_owned()),
+        _ => Err("expected how to choose candidates: 'uniform' or 'power'".to_owned()),
     }
 }
 
 fn parse_candidates(text: &str) -> Result<Candidates, String> {
     match text {
         "robust" => Ok(Candidates::Robust),
-        count => parse_count(count).map(Candidates::Count).map_err(|error| format!("{error}, or `robust`")),
+        count => real(COUNTS, 16.0)(count).map(Candidates::Count).map_err(|error| format!("{error}, or `robust`")),
     }
 }
 
@@ -210,7 +209,7 @@ fn parse_mix(text: &str) -> Result<SourceMix, String> {
         [lights, environment, scattering] => SourceMix::new(lights, environment, scattering),
         _ => None,
     };
-    mix.ok_or_else(|| "expected three shares as in 2,1,1, the first one positive".to_owned())
+    mix.ok_or_else(|| "expected three shares, the first one positive, as in 2,1,1".to_owned())
 }
 
 /// A way to find direct light, by name.

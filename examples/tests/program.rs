@@ -244,6 +244,17 @@ fn frames_and_eyes_are_rendered_together() {
     fails(folder.path(), &frames(&["--filter", "psf-hash", "--filter-time", "1"]), &["--filter-time"]);
     fails(folder.path(), &frames(&["--filter-extra", "1"]), &["--filter-extra"]);
     fails(folder.path(), &["frames", "no-such-scene"], &["no-such-scene"]);
+    for folder_option in [
+        &["frames", "cornell-box", "--out", "x.png"][..],
+        &["compare", "cornell-box", "--estimators", "path", "--out", "x.png"],
+        &["experiment", "samplers", "--out", "x.png"],
+        &["showcase", "--out", "x.png"],
+    ] {
+        let output = run(folder.path(), folder_option);
+        assert_eq!(output.status.code(), Some(2), "{folder_option:?}");
+        assert!(text(&output.stderr).contains("expected a folder, as in x;"), "{}", text(&output.stderr));
+        assert!(!folder.path().join("x.png").exists());
+    }
 }
 
 #[test]
@@ -416,14 +427,18 @@ fn nonsense_on_the_command_line_is_status_2() {
     for (arguments, reason) in [
         (&["--size", "0x8"][..], "at least one pixel"),
         (&["--size", "8"], "WIDTHxHEIGHT"),
-        (&["--spp", "99999999999999"], "not in 1..="),
-        (&["--spp", "0"], "not in 1..="),
-        (&["--spp", "-1"], "unexpected argument '-1'"),
+        (&["--spp", "99999999999999"], "whole number from 1 to 4294967296, as in 64"),
+        (&["--spp", "0"], "whole number from 1 to 4294967296, as in 64"),
+        (&["--spp", "-1"], "invalid value '-1' for '--spp <SPP>': expected a whole number"),
         (&["--size", "-8x8"], "unexpected argument '-8'"),
-        (&["--time", "-3"], "positive number"),
+        (&["--time", "-3"], "positive number, as in 60"),
         (&["--max-depth", "0"], "segments"),
         (&["--estimator", "magic"], "possible values: path"),
-        (&["--threads", "1000000"], "threads"),
+        (&["--threads", "1000000"], "from 0 to 4096"),
+        (&["--exposure", "bright"], "expected a number from -100 to 100, as in -1.5"),
+        (&["--filter-radius", "-1"], "expected a number that is not negative, as in 3"),
+        (&["--shard", "0/3"], "expected K/N with K from 1 to N, as in 2/8"),
+        (&["-D", "spp"], "expected NAME=VALUE, as in spp=16"),
     ] {
         let output = run(folder.path(), &[&["render", "cornell-box"], arguments].concat());
         let message = text(&output.stderr);

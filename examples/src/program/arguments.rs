@@ -14,6 +14,8 @@ use crate::light_photons::LightPhotonSettings;
 use crate::photons::PhotonSettings;
 use crate::resampling::ResamplingSettings;
 use crate::samplers::SamplerName;
+use crate::values::{folder, positive, stops, whole};
+use headings::{ESTIMATOR, FARM, IMAGE, SAMPLES, SCENE};
 
 /// Renders scenes with the estimators of the Lichtwerk crates, and measures them.
 #[derive(Debug, Parser)]
@@ -50,16 +52,16 @@ pub enum Command {
 #[derive(Clone, Debug, Args)]
 pub struct ShowcaseArguments {
     /// Folder for the images.
-    #[arg(long, default_value = "out")]
+    #[arg(long, default_value = "out", value_parser = folder())]
     pub out: PathBuf,
     /// Samples per pixel.
-    #[arg(long, default_value_t = DEFAULT_SHOWCASE_SAMPLES, value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    #[arg(long, default_value_t = DEFAULT_SHOWCASE_SAMPLES, value_parser = whole::<u64>(1..=MAX_SAMPLES, 64))]
     pub spp: u64,
     /// Size in pixels, as WIDTHxHEIGHT.
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
     /// Number of threads; 0 is one per core.
-    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
+    #[arg(long, default_value_t = 0, value_parser = whole::<usize>(0..=MAX_THREADS, 4))]
     pub threads: usize,
 }
 
@@ -77,86 +79,92 @@ const MAX_SAMPLES: u64 = 1 << 32;
 /// So are more threads.
 const MAX_THREADS: usize = 4096;
 
-/// Arguments of `render`.
+/// Headings of `render --help`. What is below others belongs to some estimators or filters, as [`idle`](super::idle) knows.
+pub(super) mod headings {
+    /// What is estimated, and how paths go.
+    pub(crate) const ESTIMATOR: &str = "Estimator, paths, lights";
+    /// How long, and by which numbers.
+    pub(crate) const SAMPLES: &str = "Samples and time";
+    /// What is written.
+    pub(crate) const IMAGE: &str = "Image and output";
+    /// What is rendered.
+    pub(crate) const SCENE: &str = "Scene";
+    /// Renderings that are interrupted, and those of many machines.
+    pub(crate) const FARM: &str = "Checkpoints and parts (docs/farm.md)";
+    /// Those of options that all estimators have.
+    pub(crate) const OF_ALL: [&str; 5] = [ESTIMATOR, SAMPLES, IMAGE, SCENE, FARM];
+}
+
+/// Arguments of `render`, in the order of its help.
 #[derive(Clone, Debug, Args)]
 pub struct RenderArguments {
     /// A builtin scene (see `lichtwerk list`), or a file: Mitsuba 3 .xml, glTF 2.0 .gltf or .glb, LuxCore .scn.
     pub scene: String,
     /// What adds up the light.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_enum, default_value_t, help_heading = ESTIMATOR)]
     pub estimator: EstimatorName,
-    /// How next event estimation and scattering are combined.
-    #[arg(long, value_enum, default_value_t)]
-    pub heuristic: AnyHeuristic,
-    /// How the emitter for next event estimation is chosen.
-    #[arg(long, value_enum, default_value_t)]
-    pub lights: LightSelection,
-    /// Where the random numbers come from [default: sobol; global-sobol with a path space filter].
-    #[arg(long, value_enum)]
-    pub sampler: Option<SamplerName>,
-    /// Samples per pixel [default: what the scene asks for, or 64].
-    #[arg(long, conflicts_with = "time", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
-    pub spp: Option<u64>,
-    /// Seconds to render instead of a number of samples.
-    #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
-    pub time: Option<f64>,
-    /// Size in pixels, as WIDTHxHEIGHT [default: the scene's]. The horizontal angle of view stays.
-    #[arg(long, value_parser = parse_size)]
-    pub size: Option<[u32; 2]>,
-    /// Seed of all random numbers: same seed, same image, at any number of threads.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Number of threads; 0 is one per core.
-    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
-    pub threads: usize,
     /// Segments per path, as Mitsuba counts: 1 is visible emission, 2 direct light; -1 is unlimited
     /// [default: the scene's].
-    #[arg(long, allow_negative_numbers = true, value_parser = parse_depth)]
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_depth, help_heading = ESTIMATOR)]
     pub max_depth: Option<u32>,
     /// Segments from which Russian roulette may end a path.
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0..=u32::MAX, 5), help_heading = ESTIMATOR)]
     pub rr_depth: u32,
-    /// Reconstruction filter [default: the scene's], and path space filter [default: none]; may be given once for each.
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub filter: Vec<FilterName>,
+    /// How next event estimation and scattering are combined.
+    #[arg(long, value_enum, default_value_t, help_heading = ESTIMATOR)]
+    pub heuristic: AnyHeuristic,
+    /// How the emitter for next event estimation is chosen.
+    #[arg(long, value_enum, default_value_t, help_heading = ESTIMATOR)]
+    pub lights: LightSelection,
     /// Distance up to which `ao` looks for occluders, in units of the scene [default: a tenth of the scene's radius].
-    #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
+    #[arg(long, allow_negative_numbers = true, value_parser = positive(0.5), help_heading = ESTIMATOR)]
     pub ao_distance: Option<f64>,
+    /// Samples per pixel [default: what the scene asks for, or 64].
+    #[arg(long, conflicts_with = "time", value_parser = whole::<u64>(1..=MAX_SAMPLES, 64), help_heading = SAMPLES)]
+    pub spp: Option<u64>,
+    /// Seconds to render instead of a number of samples.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = positive(60.0), help_heading = SAMPLES)]
+    pub time: Option<f64>,
+    /// Seed of all random numbers: same seed, same image, at any number of threads.
+    #[arg(long, default_value_t = 0, value_parser = whole::<u64>(0..=u64::MAX, 7), help_heading = SAMPLES)]
+    pub seed: u64,
+    /// Where the random numbers come from [default: sobol; global-sobol with a path space filter].
+    #[arg(long, value_enum, help_heading = SAMPLES)]
+    pub sampler: Option<SamplerName>,
+    /// Number of threads; 0 is one per core.
+    #[arg(long, default_value_t = 0, value_parser = whole::<usize>(0..=MAX_THREADS, 4), help_heading = SAMPLES)]
+    pub threads: usize,
     /// Image file, .exr (linear, with auxiliary channels) or .png; may be given more than once
     /// [default: out/SCENE.exr and out/SCENE.png].
-    #[arg(long)]
+    #[arg(long, value_name = "FILE", help_heading = IMAGE)]
     pub out: Vec<PathBuf>,
+    /// Size in pixels, as WIDTHxHEIGHT [default: the scene's]. The horizontal angle of view stays.
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size, help_heading = IMAGE)]
+    pub size: Option<[u32; 2]>,
     /// Exposure of PNG files, in stops: 1 is twice as bright.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops, help_heading = IMAGE)]
     pub exposure: f32,
+    /// Reconstruction filter [default: the scene's], and path space filter [default: none]; may be given once for each.
+    #[arg(long, value_enum, value_delimiter = ',', help_heading = IMAGE)]
+    pub filter: Vec<FilterName>,
     /// File for settings, time, rays and memory, as JSON; `-` is standard output.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE", help_heading = IMAGE)]
     pub stats: Option<PathBuf>,
-    /// File for the exact state of the rendering: written now and then and at the end; if it is there, the rendering goes on from it.
-    /// With mpirun each rank has its own, FILE.K-of-N.
-    #[arg(long, value_name = "FILE")]
-    pub checkpoint: Option<PathBuf>,
-    /// Seconds between two checkpoints.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = parse_positive)]
-    pub checkpoint_seconds: f64,
-    /// Only this part of the samples, for `lichtwerk merge`: number K of N equal ones.
-    #[arg(long, value_name = "K/N")]
-    pub shard: Option<Shard>,
     /// Show the image so far in the tev viewer that listens on HOST:PORT.
-    #[arg(long, value_name = "HOST:PORT")]
+    #[arg(long, value_name = "HOST:PORT", help_heading = IMAGE)]
     pub display_server: Option<String>,
     /// Set a parameter of a Mitsuba file; may be given more than once.
-    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition, help_heading = SCENE)]
     pub definitions: Vec<(String, String)>,
-    /// Light paths.
-    #[command(flatten)]
-    pub light_paths: LightPathSettings,
     /// Resampling.
     #[command(flatten)]
     pub resampling: ResamplingSettings,
     /// Light selection by photons.
     #[command(flatten)]
     pub light_photons: LightPhotonSettings,
+    /// Light paths.
+    #[command(flatten)]
+    pub light_paths: LightPathSettings,
     /// Photon maps.
     #[command(flatten)]
     pub photons: PhotonSettings,
@@ -166,6 +174,16 @@ pub struct RenderArguments {
     /// Go on where this path space filtered image stopped, and write the mean of both.
     #[arg(long = "continue", value_name = "IMAGE.exr", requires = "filter", conflicts_with_all = ["checkpoint", "shard"], help_heading = "Path space filter")]
     pub continued: Option<PathBuf>,
+    /// File for the exact state of the rendering: written now and then and at the end; if it is there, the rendering goes on from it.
+    /// With mpirun each rank has its own, FILE.K-of-N.
+    #[arg(long, value_name = "FILE", help_heading = FARM)]
+    pub checkpoint: Option<PathBuf>,
+    /// Seconds between two checkpoints.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = positive(60.0), help_heading = FARM)]
+    pub checkpoint_seconds: f64,
+    /// Only this part of the samples, for `lichtwerk merge`: number K of N equal ones.
+    #[arg(long, value_name = "K/N", help_heading = FARM)]
+    pub shard: Option<Shard>,
 }
 
 /// Arguments of `frames`.
@@ -175,7 +193,7 @@ pub struct FramesArguments {
     #[arg(required = true)]
     pub scenes: Vec<String>,
     /// Two images of each frame, for eyes so far apart (in units of the scene).
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = parse_positive)]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = positive(0.065))]
     pub stereo: Option<f64>,
     /// The mean of all frames in place of each: motion blur.
     #[arg(long)]
@@ -187,31 +205,31 @@ pub struct FramesArguments {
     #[arg(long, value_enum, default_value = "psf")]
     pub filter: PathFilterName,
     /// Largest number of frames between vertices that are alike [default: any].
-    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = parse_positive)]
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = positive(2.0))]
     pub filter_time: Option<f64>,
     /// Samples per pixel of each image.
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    #[arg(long, default_value_t = 16, value_parser = whole::<u64>(1..=MAX_SAMPLES, 64))]
     pub spp: u64,
     /// Size in pixels, as WIDTHxHEIGHT [default: the scenes'].
     #[arg(long, value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
     /// Seed of all random numbers.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = whole::<u64>(0..=u64::MAX, 7))]
     pub seed: u64,
     /// Number of threads; 0 is one per core.
-    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
+    #[arg(long, default_value_t = 0, value_parser = whole::<usize>(0..=MAX_THREADS, 4))]
     pub threads: usize,
     /// Segments per path; -1 is unlimited [default: unlimited].
     #[arg(long, allow_negative_numbers = true, value_parser = parse_depth)]
     pub max_depth: Option<u32>,
     /// Distance up to which `ao` looks for occluders [default: a tenth of the scene's radius].
-    #[arg(long, allow_negative_numbers = true, value_parser = parse_positive)]
+    #[arg(long, allow_negative_numbers = true, value_parser = positive(0.5))]
     pub ao_distance: Option<f64>,
     /// Folder for the images.
-    #[arg(long, default_value = "out")]
+    #[arg(long, default_value = "out", value_parser = folder())]
     pub out: PathBuf,
     /// Exposure of PNG files, in stops.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
     pub exposure: f32,
     /// Path space filtering.
     #[command(flatten)]
@@ -231,7 +249,7 @@ pub struct MergeArguments {
     #[arg(long)]
     pub checkpoint: Option<PathBuf>,
     /// Exposure of PNG files, in stops.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true, value_parser = stops)]
     pub exposure: f32,
 }
 
@@ -256,19 +274,19 @@ pub struct CompareArguments {
     #[arg(long, required = true, value_delimiter = ',', value_name = "ENTRIES")]
     pub estimators: Vec<String>,
     /// Renderings of each estimator at each budget, with different seeds.
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, default_value_t = 8, value_parser = whole::<u64>(1..=1000, 8))]
     pub trials: u64,
     /// The image that is taken for the truth, .exr [default: path tracing, kept in the cache].
     #[arg(long, value_name = "FILE")]
     pub reference: Option<PathBuf>,
     /// Samples per pixel of the reference that path tracing makes [default: 64 times the budget].
-    #[arg(long, conflicts_with = "reference", value_parser = clap::value_parser!(u64).range(1..=MAX_SAMPLES))]
+    #[arg(long, conflicts_with = "reference", value_parser = whole::<u64>(1..=MAX_SAMPLES, 64))]
     pub reference_spp: Option<u64>,
     /// Folder where references are kept.
-    #[arg(long, default_value = "out/references")]
+    #[arg(long, default_value = "out/references", value_parser = folder())]
     pub cache: PathBuf,
     /// Folder for report.html, report.json and pictures [default: out/compare-SCENE].
-    #[arg(long)]
+    #[arg(long, value_parser = folder())]
     pub out: Option<PathBuf>,
     /// Options of `render`, for all estimators.
     #[command(flatten)]
@@ -285,13 +303,13 @@ pub struct ExperimentArguments {
     pub quick: bool,
     /// Folder for report.json, report.html and pictures; for `all`, each experiment has a folder of its name in it
     /// [default: out/NAME].
-    #[arg(long)]
+    #[arg(long, value_parser = folder())]
     pub out: Option<PathBuf>,
     /// Seed of all random numbers.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0..=u64::MAX, 7))]
     pub seed: u64,
     /// Number of threads; 0 is one per core.
-    #[arg(long, default_value_t = 0, value_parser = parse_threads)]
+    #[arg(long, default_value_t = 0, value_parser = whole::<usize>(0..=MAX_THREADS, 4))]
     pub threads: usize,
     /// Take what is in the folder already, if it is of the same form and seed, in place of running an experiment again: `all` goes on
     /// where it was interrupted.
@@ -305,23 +323,11 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
     };
     match parse() {
-        Some([0, _] | [_, 0]) => Err("an image needs at least one pixel in each direction".to_owned()),
+        Some([0, _] | [_, 0]) => {
+            Err("an image needs at least one pixel in each direction: expected WIDTHxHEIGHT, as in 640x360".to_owned())
+        }
         Some(size) => Ok(size),
         None => Err("expected WIDTHxHEIGHT, as in 640x360".to_owned()),
-    }
-}
-
-fn parse_threads(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(threads) if threads <= MAX_THREADS => Ok(threads),
-        _ => Err(format!("expected a number of threads up to {MAX_THREADS}")),
-    }
-}
-
-fn parse_positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a positive number".to_owned()),
     }
 }
 
@@ -329,14 +335,14 @@ fn parse_depth(text: &str) -> Result<u32, String> {
     match text.parse::<i64>() {
         Ok(-1) => Ok(u32::MAX),
         Ok(depth) if (1..i64::from(u32::MAX)).contains(&depth) => Ok(depth as u32),
-        _ => Err("expected a number of segments from 1, or -1 for no limit".to_owned()),
+        _ => Err("expected a number of segments from 1, as in 5, or -1 for no limit".to_owned()),
     }
 }
 
 fn parse_definition(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
-        _ => Err("expected NAME=VALUE".to_owned()),
+        _ => Err("expected NAME=VALUE, as in spp=16".to_owned()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The `lichtwerk` program: its subcommands as functions.
 
 mod arguments;
+mod command_line;
 mod compare;
 mod diff;
 mod done;
@@ -19,13 +20,14 @@ mod showcase;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::{CommandFactory, FromArgMatches};
+use clap::FromArgMatches;
 use serde::Serialize;
 
 pub use arguments::{
     Arguments, Command, CompareArguments, DiffArguments, ExperimentArguments, FramesArguments, MergeArguments,
     RenderArguments, ShowcaseArguments,
 };
+use command_line::command_line;
 pub use compare::RenderOptions;
 pub use load::{LoadError, load_description};
 pub use parts::Shard;
@@ -41,11 +43,15 @@ pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// Parses the command line and runs; returns the process's exit code: 0 for success, 1 for failure, 2 for a wrong
 /// command line.
 pub fn main() -> std::process::ExitCode {
-    let parsed = Arguments::command().try_get_matches();
-    let parsed = parsed.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, matches)));
+    let parsed = command_line().try_get_matches();
+    let parsed = parsed.and_then(|matches| {
+        let arguments = Arguments::from_arg_matches(&matches)?;
+        of_render(&arguments, &matches).map_or(Ok(()), |(render, matches)| idle::check(matches, render))?;
+        Ok((arguments, matches))
+    });
     let arguments = match parsed {
         Ok((arguments, matches)) => {
-            if let (Some(Command::Render(render)), Some((_, matches))) = (&arguments.command, matches.subcommand()) {
+            if let Some((render, matches)) = of_render(&arguments, &matches) {
                 warn_of_idle(matches, render);
             }
             arguments
@@ -72,6 +78,17 @@ pub fn main() -> std::process::ExitCode {
 /// Whether this process is the first that a launcher started, or the only one: the others would say the same.
 fn is_first_launched() -> bool {
     launched_rank().unwrap_or(0) == 0
+}
+
+/// The arguments of `render`, if it is called, and how they were given.
+fn of_render<'a>(
+    arguments: &'a Arguments,
+    matches: &'a clap::ArgMatches,
+) -> Option<(&'a RenderArguments, &'a clap::ArgMatches)> {
+    match (&arguments.command, matches.subcommand()) {
+        (Some(Command::Render(render)), Some((_, matches))) => Some((render, matches)),
+        _ => None,
+    }
 }
 
 fn warn_of_idle(matches: &clap::ArgMatches, render: &RenderArguments) {

@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
-use crate::program::{Failure, RenderArguments};
+use crate::program::{Failure, RenderArguments, idle};
 
 /// Options of `render` that make no sense for renderings that are compared.
 const NOT_HERE: [&str; 9] =
@@ -116,7 +116,9 @@ impl RenderOptions {
     fn with(&self, scene: &str, words: &[String]) -> Result<RenderArguments, clap::Error> {
         let all = std::iter::once(OsString::from(scene)).chain(self.0.iter().cloned());
         let matches = render_command().try_get_matches_from(all.chain(words.iter().map(OsString::from)))?;
-        RenderArguments::from_arg_matches(&matches)
+        let arguments = RenderArguments::from_arg_matches(&matches)?;
+        idle::check(&matches, &arguments)?;
+        Ok(arguments)
     }
 }
 
@@ -224,7 +226,9 @@ mod tests {
             (":spp=4", "no name"),
             ("path,", "no name"),
             ("path,bdpt,path", "entry 'path': named twice"),
-            ("robust-igi:threshold=-1", "threshold"),
+            ("robust-igi:threshold=-1", "expected a number that is not negative, as in 100"),
+            ("robust-igi:light-paths=few", "expected a whole number from 1 to 16777216, as in 32"),
+            ("path:lights=ris:direct=nee", "--lights ris stands for --direct ris, and contradicts --direct nee"),
         ] {
             let message = entries(&[], bad).unwrap_err();
             assert!(message.contains(reason), "'{bad}': '{message}' does not say '{reason}'");
