@@ -55,11 +55,14 @@ pub struct LightPathSettings {
     /// with robust-igi scattered rays carry it.
     #[arg(long, value_enum, default_value_t)]
     pub partition: PartitionName,
-    /// Light paths that a sample is connected to.
-    #[arg(long, value_name = "COUNT", default_value_t = DEFAULT_LIGHT_PATHS, value_parser = whole::<u32>(1..=1 << 24, 32))]
+    /// Light paths that a sample is connected to [default: 1 with bdpt, and 32 otherwise].
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u32>(1..=1 << 24, 32), hide_default_value = true,
+        default_value_t = DEFAULT_LIGHT_PATHS, default_value_if("estimator", "bdpt", "1"))]
     pub light_paths: u32,
-    /// Tile of pixels with different light paths, shared by all tiles; `none` gives every sample its own.
-    #[arg(long, value_name = "TILE", default_value = "3x3", value_parser = parse_interleave)]
+    /// Tile of pixels with different light paths, shared by all tiles; `none` gives every sample its own [default: none with bdpt,
+    /// which is then the classical form, and 3x3 otherwise].
+    #[arg(long, value_name = "TILE", value_parser = parse_interleave, hide_default_value = true,
+        default_value = "3x3", default_value_if("estimator", "bdpt", "none"))]
     pub interleave: Interleave,
     /// Shadow rays: `all`, `sampled:N` by contribution, or `ordered:TOLERANCE`, the brightest first.
     #[arg(long, default_value = "all", value_parser = parse_shadow_rays)]
@@ -90,6 +93,7 @@ const DEFAULT_THRESHOLD: f32 = 100.0;
 pub type Interleave = Option<Interleaved>;
 
 impl Default for LightPathSettings {
+    /// Those of virtual point lights; [`classical`](LightPathSettings::classical) ones are bidirectional path tracing's.
     fn default() -> Self {
         Self {
             threshold: None,
@@ -134,6 +138,21 @@ pub fn smooth(image: &mut LayeredImage, sides: [u32; 2]) -> Result<(), LayeredIm
 }
 
 impl LightPathSettings {
+    /// For each eye path one light path of its own, as Veach and Guibas have them: what the command line takes for `bdpt`.
+    pub fn classical() -> Self {
+        Self { light_paths: 1, interleave: None, ..Self::default() }
+    }
+
+    /// Light paths of a sample, and who shares them, in words.
+    pub fn describe_paths(&self) -> String {
+        let count = self.light_paths;
+        let paths = if count == 1 { "1 light path".to_owned() } else { format!("{count} light paths") };
+        match self.interleave.map(|tile| tile.sides()) {
+            None => format!("{paths} of its own for each sample"),
+            Some([x, y]) => format!("{paths} for each sample, shared by all tiles of {x}x{y} pixels"),
+        }
+    }
+
     /// Sides of the tile of the discontinuity buffer, if one is asked for and there is a tile.
     pub fn smoothing(&self) -> Option<[u32; 2]> {
         self.interleave.filter(|_| self.discontinuity_buffer).map(|tile| tile.sides())
@@ -235,6 +254,27 @@ fn parse_shadow_rays(text: &str) -> Result<ShadowRays, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Whoever asks for bidirectional path tracing gets the classical form; with anything else the numbers are shared.
+    #[test]
+    fn light_paths_are_shared_unless_they_are_bidirectional() {
+        let parsed = |words: &[&str]| {
+            let command =
+                clap::Command::new("a").no_binary_name(true).arg(clap::Arg::new("estimator").long("estimator"));
+            let matches = LightPathSettings::augment_args(command).try_get_matches_from(words).unwrap();
+            let found = <LightPathSettings as clap::FromArgMatches>::from_arg_matches(&matches).unwrap();
+            (found.light_paths, found.interleave.map(|tile| tile.sides()), found.describe_paths())
+        };
+        let usual = (32, Some([3, 3]), "32 light paths for each sample, shared by all tiles of 3x3 pixels".to_owned());
+        assert_eq!(parsed(&[]), usual);
+        assert_eq!(parsed(&["--estimator=robust-igi"]), usual);
+        let classical = LightPathSettings::classical();
+        assert_eq!((classical.light_paths, classical.interleave), (1, None));
+        let text = "1 light path of its own for each sample".to_owned();
+        assert_eq!(parsed(&["--estimator=bdpt"]), (1, None, text));
+        let (count, tile, _) = parsed(&["--light-paths=8", "--estimator=bdpt", "--interleave=2x2"]);
+        assert_eq!((count, tile), (8, Some([2, 2])));
+    }
 
     #[test]
     fn names_are_parsed() {

@@ -37,6 +37,8 @@ fn a_page_a_report_and_pictures_are_written_and_the_reference_is_kept() {
     // The reference, two means, two maps of each kind, three auxiliary ones.
     assert_eq!(page.matches("<script class=\"pixels\"").count(), 10);
     assert!(page.contains("<svg") && page.contains("bdpt<wbr>:heuristic=balance") && page.ends_with("</html>"));
+    assert!(page.contains("1 light path of its own for each sample"), "bdpt is the classical form");
+    assert!(page.contains("of each of these errors is the reference's own") && page.contains("% of the smallest one"));
     let found = report(&out.join("report.json"));
     assert_eq!(found.experiment, "compare-cornell-box");
     let rows: Vec<(&str, &serde_json::Value)> =

@@ -105,23 +105,15 @@ fn render_writes_images_and_stats_and_says_nothing_in_a_pipe() {
             assert_eq!(stats[key].as_str(), image.attribute(attribute).map(ToString::to_string).as_deref(), "{key}");
         }
         assert_eq!((&stats["seed"], &stats["max_depth"], &stats["lights"]), (&0.into(), &(-1).into(), &"power".into()));
-        // Light paths whose splats are on the film count: as many as there are pixels, or those of a tile.
+        // Light paths whose splats are on the film count: as many as there are samples.
         let light_paths = match estimator {
-            "light" => 48,
-            "bdpt" => 9 * 32,
+            "light" | "bdpt" => 48,
             _ => 0,
         };
         assert_eq!(stats["paths"], 48 + light_paths);
         assert!(stats["closest_hit_rays"].as_u64().unwrap() >= 48);
         assert!(stats["load_seconds"].as_f64().unwrap() > 0.0 && stats["render_seconds"].as_f64().unwrap() > 0.0);
     }
-}
-
-#[test]
-fn without_a_name_images_go_to_out() {
-    let folder = tempfile::tempdir().unwrap();
-    succeeds(folder.path(), &tiny(&[]));
-    assert_eq!(names(&folder.path().join("out")), ["cornell-box.exr", "cornell-box.png"]);
 }
 
 /// What was asked for is in the numbers, which may go to standard output.
@@ -141,6 +133,13 @@ fn stats_tell_the_settings_in_a_pipe_too() {
     let numbers = answer(folder.path(), &["diff", "a.exr", "b.exr", "--json", "-"]);
     assert!(serde_json::from_str::<serde_json::Value>(&numbers).unwrap()["mse"].as_f64().unwrap() > 0.0);
     assert_eq!(names(folder.path()), ["a.exr", "b.exr"]);
+}
+
+#[test]
+fn without_a_name_images_go_to_out() {
+    let folder = tempfile::tempdir().unwrap();
+    succeeds(folder.path(), &tiny(&[]));
+    assert_eq!(names(&folder.path().join("out")), ["cornell-box.exr", "cornell-box.png"]);
 }
 
 #[test]
@@ -211,6 +210,27 @@ fn light_paths_have_options() {
         assert!(message.contains(reason), "{more:?}: '{message}' does not say '{reason}'");
     }
     fails(folder.path(), &tiny(&["--heuristic", "stratification"]), &["whole paths"]);
+}
+
+/// The classical form unless told otherwise.
+#[test]
+fn light_paths_are_shared_by_pixels_only_if_bdpt_is_told_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = |more: &[&str]| {
+        let bdpt = ["--estimator", "bdpt", "--out", "a.exr", "--stats", "a.json"];
+        succeeds(folder.path(), &tiny(&[&bdpt[..], more].concat()));
+        let stats: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+        (stats["paths"].as_u64().unwrap() - 48, image(folder.path(), "a.exr").rgb().unwrap())
+    };
+    let usual = paths(&[]);
+    assert_eq!(usual, paths(&["--light-paths", "1", "--interleave", "none"]));
+    let shared = paths(&["--light-paths", "32", "--interleave", "3x3"]);
+    assert_eq!((usual.0, shared.0), (48, 9 * 32));
+    assert_ne!(usual.1, shared.1);
+    let refused = run(folder.path(), &tiny(&["--lights", "ris", "--direct", "nee"]));
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("contradicts --direct nee"), "{}", text(&refused.stderr));
 }
 
 #[test]
@@ -654,6 +674,7 @@ fn shards_are_merged_to_the_whole_bit_for_bit() {
         ("z-sobol", &["--sampler", "z-sobol"]),
         ("light", &["--estimator", "light"]),
         ("bdpt", &["--estimator", "bdpt"]),
+        ("bdpt-shared", &["--estimator", "bdpt", "--light-paths", "3", "--interleave", "3x3"]),
         ("igi", &["--estimator", "robust-igi", "--interleave", "3x3", "--discontinuity-buffer"]),
         ("sppm", &["--estimator", "sppm"]),
         ("photons", &["--estimator", "direct", "--lights", "photons"]),

@@ -120,6 +120,7 @@ mod tests {
         for (idle, reason) in [
             (&["--lights=uniform", "--direct=ris"][..], "--candidate-lights"),
             (&["--lights=power", "--direct=scattering"], "chooses no emitter"),
+            (&["--estimator=bdpt", "--discontinuity-buffer"], "--interleave"),
             (&["--estimator=robust-igi", "--discontinuity-buffer", "--interleave=none"], "--interleave"),
         ] {
             let lines = told(idle);
@@ -130,6 +131,7 @@ mod tests {
             &["--direct=ris"],
             &["--lights=uniform", "--direct=ris", "--estimator=photon-map"],
             &["--estimator=robust-igi", "--discontinuity-buffer"],
+            &["--estimator=bdpt", "--discontinuity-buffer", "--interleave=2x2"],
         ] {
             assert_eq!(told(used), [""; 0], "{used:?}");
         }

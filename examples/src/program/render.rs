@@ -48,8 +48,8 @@ pub enum EstimatorName {
     RobustIgi,
     /// Virtual point lights alone. Biased where the threshold is not infinite, or there are mirrors and glass.
     InstantRadiosity,
-    /// Bidirectional path tracing, weighted by the heuristic; each sample is connected to --light-paths that pixels share (with 1
-    /// and `--interleave none` it is the classical form).
+    /// Bidirectional path tracing, weighted by the heuristic: each eye path has a light path of its own, or more that pixels share
+    /// (`--light-paths 32 --interleave 3x3`).
     Bdpt,
     /// Emission and direct light, with samples that neighbouring pixels share without bias.
     RestirDirect,

@@ -58,6 +58,9 @@ impl Found<'_> {
                 div { dt { "trials" } dd { (wanted) } }
                 div { dt { "seed" } dd { (self.plan.seed) } }
                 div { dt { "reference" } dd { (self.reference.about) } }
+                @for entry in self.entries.iter().filter(|entry| entry.arguments.estimator.connects_light_paths()) {
+                    div { dt { (entry.text) } dd { (entry.arguments.light_paths.describe_paths()) } }
+                }
             }
             @if !full {
                 p.notice { "Interrupted: " (found) " of " (wanted) " trials were begun. Intervals tell what these few are worth." }
