@@ -4,7 +4,6 @@ use std::path::Path;
 
 use scene_core::film::LayeredImage;
 
-use super::exr_header::sort_attributes;
 use super::{OutputError, write_atomically};
 
 /// Formats that images are written in.
@@ -38,11 +37,10 @@ impl ImageFormat {
 /// # Errors
 /// [`OutputError`], which names the file.
 pub fn save_image(path: &Path, image: &LayeredImage, exposure: f32) -> Result<(), OutputError> {
-    let mut bytes = match ImageFormat::of(path)? {
+    let bytes = match ImageFormat::of(path)? {
         ImageFormat::Exr => image.encode_exr(),
         ImageFormat::Png => image.encode_png(exposure),
     }
     .map_err(|error| OutputError::encode(path, error))?;
-    sort_attributes(&mut bytes);
     write_atomically(path, |file| file.write_all(&bytes))
 }

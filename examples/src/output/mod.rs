@@ -10,7 +10,6 @@
 mod atomic;
 mod checkpoint;
 mod display;
-mod exr_header;
 mod image_file;
 mod interrupt;
 mod progress;

@@ -8,11 +8,13 @@ use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, 
 use exr::meta::attribute::{AttributeValue, Compression, LineOrder, Text};
 use exr::meta::header::LayerAttributes;
 
+use super::exr_header::sort_attributes;
 use super::{Attribute, ImageFileError, LayeredImage};
 
 impl LayeredImage {
     /// The bytes of an OpenEXR file: a single part of scan lines, 32-bit float channels, ZIP compression (lossless).
-    /// Attributes become `string` (UTF-8) and `double` attributes of the same name.
+    /// Attributes become `string` (UTF-8) and `double` attributes of the same name, in the order of their names: the same image is the
+    /// same bytes.
     ///
     /// It is encoded in memory: whoever writes the bytes notices a full disk, and can replace an old file in one step.
     ///
@@ -38,7 +40,9 @@ impl LayeredImage {
         let image = Image::from_layer(Layer::new(size, attributes, encoding, channels));
         let mut bytes = Cursor::new(Vec::new());
         image.write().to_buffered(&mut bytes).map_err(|error| ImageFileError::Encode(error.to_string()))?;
-        Ok(bytes.into_inner())
+        let mut bytes = bytes.into_inner();
+        sort_attributes(&mut bytes);
+        Ok(bytes)
     }
 
     /// Writes an OpenEXR file, see [`encode_exr`](Self::encode_exr). An existing file is overwritten in place.

@@ -41,6 +41,8 @@ mod exr_decode;
 #[cfg(feature = "image-files")]
 mod exr_encode;
 #[cfg(feature = "image-files")]
+mod exr_header;
+#[cfg(feature = "image-files")]
 mod file_error;
 #[cfg(feature = "image-files")]
 mod png;
