@@ -21,7 +21,7 @@ use scene_core::{
 };
 
 /// Quick and long forms count: both may run.
-static SUITE: Suite = Suite::with_share("workspace estimators", 60, 1.5e-7);
+static SUITE: Suite = Suite::with_share("workspace estimators", 60, 1.3e-7);
 
 /// A closed form comes without noise to compare skewness with: more batches.
 const FURNACE: Effort = Effort { samples: 64, batches: 40, block: 6 };

@@ -6,6 +6,7 @@ mod assets;
 mod bidirectional;
 mod determinism;
 mod estimators;
+mod laws;
 mod path_filters;
 mod photon_lights;
 mod photon_maps;

@@ -1,6 +1,6 @@
 //! The laws of the traits of the Lichtwerk crates, asked of anybody's implementation.
 //!
-//! Each crate has a feature of its own name; [`domain`] and [`resampling`] need none. A checker takes what is to be checked, and
+//! Each crate has a feature of its own name; [`domain`] and [`resampling`] need none, and `vpl-gi` brings `scene-core`. A checker takes what is to be checked, and
 //! - a name where no chance is involved, and returns an [`Outcome`]: what it reports is a proof,
 //! - a [`Check`](crate::Check) where laws are statistical, and returns a [`Report`](crate::Report): first the laws that hold
 //!   exactly, then the others, which share the level of the check.
@@ -11,6 +11,8 @@
 pub mod domain;
 #[cfg(feature = "path-space-filter")]
 pub mod path_space;
+#[cfg(feature = "vpl-gi")]
+pub mod paths;
 #[cfg(feature = "photon-map")]
 pub mod photons;
 #[cfg(feature = "range-search")]
@@ -65,5 +67,4 @@ mod tools {
 
 #[cfg(any(feature = "path-space-filter", feature = "scene-core"))]
 use tools::near;
-#[cfg(any(feature = "path-space-filter", feature = "qmc-sampling", feature = "scene-core"))]
 use tools::{Law, hold};

@@ -1,5 +1,9 @@
-//! The laws of the traits of `ris` that are functions of numbers: `Select`, `Uniform`, and, in the crate's root, `Source` and
-//! `Weights`. No feature is needed, and no dependency: closures stand for the traits.
+//! The laws of the traits of `ris` that are functions of numbers: `Target`, `Select`, `Uniform`, and, in the crate's root, `Source`
+//! and `Weights`. No feature is needed, and no dependency: closures stand for the traits.
+
+mod target;
+
+pub use target::{check_scores, check_target, check_target_on_source};
 
 pub use crate::resampling::{check_resampling_weights, check_source};
 

@@ -3,19 +3,23 @@
 // Helper functions of tests may unwrap.
 #![allow(clippy::unwrap_used)]
 
+mod caustics;
+mod connections;
 mod emitter;
 mod liar;
 mod numbers;
 mod path_space;
+mod paths;
 mod sampler;
 mod sampler_lies;
 mod scene;
 mod spectrum;
+mod target;
 mod vertex;
 
 use estimator_checks::{Outcome, Report, Suite, Verdict, Violation};
 
-pub(crate) static SUITE: Suite = Suite::with_share("estimator-checks laws", 32, 5e-8);
+pub(crate) static SUITE: Suite = Suite::with_share("estimator-checks laws", 42, 6e-8);
 
 /// The law that an outcome names.
 #[track_caller]

@@ -42,12 +42,12 @@ fn is_unit(w: Vec3A) -> bool {
 }
 
 /// The components of a spectrum.
-fn components<S: Spectrum>(spectrum: &S) -> Vec<f64> {
+pub(in crate::laws) fn components<S: Spectrum>(spectrum: &S) -> Vec<f64> {
     (0..S::COMPONENTS).map(|i| f64::from(spectrum.component(i))).collect()
 }
 
 /// Whether every component is finite and not negative.
-fn is_amount<S: Spectrum>(spectrum: &S) -> bool {
+pub(in crate::laws) fn is_amount<S: Spectrum>(spectrum: &S) -> bool {
     spectrum.is_finite() && components(spectrum).iter().all(|&c| c >= 0.0 && c.is_finite())
 }
 
