@@ -27,6 +27,21 @@ mod slope;
 mod suite;
 mod verdict;
 
+pub use mis_heuristics;
+#[cfg(feature = "path-space-filter")]
+pub use path_space_filter;
+#[cfg(feature = "photon-map")]
+pub use photon_map;
+#[cfg(feature = "qmc-sampling")]
+pub use qmc_sampling;
+pub use rand_pcg;
+#[cfg(feature = "range-search")]
+pub use range_search;
+#[cfg(feature = "scene-core")]
+pub use scene_core;
+#[cfg(feature = "vpl-gi")]
+pub use vpl_gi;
+
 pub use blocks::{BatchMeans, BlockError};
 pub use chi_square::{ChiSquare, Missing};
 pub use correlation::{serially_uncorrelated, uncorrelated};

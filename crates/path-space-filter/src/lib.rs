@@ -16,6 +16,8 @@ mod similarity;
 mod spectral;
 mod vertex;
 
+pub use range_search;
+
 pub use averages::Averages;
 pub use batches::{Batch, BatchError, Batches, SwitchOff};
 pub use contribution::Contribution;

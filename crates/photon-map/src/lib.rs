@@ -21,6 +21,8 @@ mod projection;
 mod sphere;
 mod vector;
 
+pub use range_search;
+
 pub use bytes::{FluxWords, PhotonBytesError};
 pub use caustics::{CausticRule, CausticRuleError, LastBounce};
 pub use density::{DensityEstimation, Estimate, Gather, GatherError, GatherPoint, MapError, PhotonMap, Scratch};

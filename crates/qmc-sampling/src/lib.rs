@@ -27,6 +27,8 @@ pub mod warp;
 
 pub use float::{f32_from_bits, f64_from_bits};
 pub use interleaved::Interleaved;
+#[cfg(feature = "rand")]
+pub use rand_core;
 pub use real::Real;
 pub use replications::{Replications, StoppingRule};
 #[cfg(feature = "rand")]

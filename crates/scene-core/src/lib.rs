@@ -31,6 +31,7 @@ mod warnings;
 pub use counting::{Counting, RayCounts};
 pub use frame::Frame;
 pub use glam;
+pub use qmc_sampling;
 pub use ray::{Ray, SurfacePoint};
 #[cfg(feature = "reference")]
 pub use reference::{PowerChoice, ReferenceScene, SceneDescription, SceneError, UniformChoice};

@@ -13,6 +13,11 @@ mod robust;
 mod shading;
 mod shadow_rays;
 
+pub use glam;
+pub use mis_heuristics;
+pub use qmc_sampling;
+pub use scene_core;
+
 pub use ambient::openness;
 pub use bidirectional::{
     Bidirectional, Classical, ConnectionTests, EveryConnection, LightPaths, PathHeuristic, PathTechniques, Stratified,
