@@ -111,7 +111,7 @@ fn all_points(criterion: &mut Criterion) {
                 |q| *q,
                 radius,
                 |_, found| {
-                    sum += found.iter().map(|neighbor| neighbor.distance_squared()).sum::<f32>();
+                    sum += found.iter().map(|neighbour| neighbour.distance_squared()).sum::<f32>();
                 },
             )
             .map(|()| sum)
@@ -129,9 +129,9 @@ fn filter(criterion: &mut Criterion) {
         let (points, radius) = surface_points(count);
         let grid = HashGrid::build(&points, |p| *p, radius).expect("a grid");
         let payloads = grid.reorder(&points.iter().map(|point| point[0]).collect::<Vec<f32>>());
-        let mean = |neighborhood: range_search::Neighborhood<'_>| {
-            let sum: f32 = neighborhood.slots().iter().map(|&slot| payloads[slot as usize]).sum();
-            sum / neighborhood.len() as f32
+        let mean = |neighbourhood: range_search::Neighbourhood<'_>| {
+            let sum: f32 = neighbourhood.slots().iter().map(|&slot| payloads[slot as usize]).sum();
+            sum / neighbourhood.len() as f32
         };
         let mut group = group(criterion, &format!("range search, self-query with means, {count} points"), count);
         group.bench_function("grid", |b| b.iter(|| grid.self_query(radius).map(mean)));

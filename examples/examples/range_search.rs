@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout)]
 
 use qmc_sampling::{Independent, Sampler, SamplerFamily};
-use range_search::{BruteForce, HashGrid, Neighbor, RangeIndex};
+use range_search::{BruteForce, HashGrid, Neighbour, RangeIndex};
 
 /// Points on the sphere.
 const POINTS: u64 = 100_000;
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // 1. Ask around some of the points, and compare.
     let (mut within, mut nearest, mut differ) = (0, 0, 0);
-    let (mut ours, mut theirs): (Vec<Neighbor>, Vec<Neighbor>) = (Vec::new(), Vec::new());
+    let (mut ours, mut theirs): (Vec<Neighbour>, Vec<Neighbour>) = (Vec::new(), Vec::new());
     for vertex in vertices.iter().take(COMPARED) {
         let found = grid.within(vertex.position, RADIUS);
         within += found.len();
@@ -61,9 +61,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // 2. Ask around all points at once, with what they carry in the grid's order.
     let values: Vec<f32> = vertices.iter().map(|vertex| vertex.value).collect();
     let sorted = grid.reorder(&values);
-    let means = grid.self_query(RADIUS).map(|neighborhood| {
-        let sum: f32 = neighborhood.slots().iter().map(|&slot| sorted[slot as usize]).sum();
-        sum / neighborhood.len() as f32
+    let means = grid.self_query(RADIUS).map(|neighbourhood| {
+        let sum: f32 = neighbourhood.slots().iter().map(|&slot| sorted[slot as usize]).sum();
+        sum / neighbourhood.len() as f32
     });
     let mut filtered = values.clone();
     grid.restore(&means, &mut filtered);

@@ -16,7 +16,8 @@ pub enum Verdict {
     Undecided(Undecided),
 }
 
-/// A fact that refutes a claim with certainty.
+/// A fact that refutes a claim with certainty. A broken law is [`Law`](Self::Law), made of the `Violation` of the crates' own checkers
+/// (`range_search::check`), which know no more than laws.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Violation {

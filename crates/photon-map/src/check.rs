@@ -15,27 +15,10 @@
 //! # Ok::<(), photon_map::check::Violation>(())
 //! ```
 
-use core::fmt;
+pub use range_search::check::Violation;
 
 use crate::deposition::LEAST;
 use crate::{Deposition, Flux};
-
-/// A law that is broken, and what shows it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Violation {
-    /// What is wrong.
-    pub law: &'static str,
-    /// Where.
-    pub counterexample: String,
-}
-
-impl fmt::Display for Violation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({})", self.law, self.counterexample)
-    }
-}
-
-impl core::error::Error for Violation {}
 
 fn hold(law: &'static str, holds: bool, counterexample: impl FnOnce() -> String) -> Result<(), Violation> {
     if holds { Ok(()) } else { Err(Violation { law, counterexample: counterexample() }) }

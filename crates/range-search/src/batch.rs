@@ -1,7 +1,7 @@
 //! Many queries of an index.
 
 use crate::index::RangeIndex;
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Queries that one thread works on at a time.
 #[cfg(feature = "rayon")]
@@ -10,18 +10,18 @@ const CHUNK: usize = 256;
 /// What many queries found: a list of neighbours for each, one after the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lists {
-    neighbors: Vec<Neighbor>,
+    neighbours: Vec<Neighbour>,
     /// Where each list ends.
     ends: Vec<usize>,
 }
 
 impl Lists {
     fn new(queries: usize) -> Self {
-        Self { neighbors: Vec::new(), ends: Vec::with_capacity(queries) }
+        Self { neighbours: Vec::new(), ends: Vec::with_capacity(queries) }
     }
 
     fn end(&mut self) {
-        self.ends.push(self.neighbors.len());
+        self.ends.push(self.neighbours.len());
     }
 
     /// Number of queries.
@@ -35,18 +35,18 @@ impl Lists {
     }
 
     /// What a query found; nothing if there was no such query.
-    pub fn get(&self, query: usize) -> Option<&[Neighbor]> {
+    pub fn get(&self, query: usize) -> Option<&[Neighbour]> {
         let start = if query == 0 { 0 } else { *self.ends.get(query - 1)? };
-        self.neighbors.get(start..*self.ends.get(query)?)
+        self.neighbours.get(start..*self.ends.get(query)?)
     }
 
     /// What each query found, in the order of queries.
-    pub fn iter(&self) -> impl Iterator<Item = &[Neighbor]> {
+    pub fn iter(&self) -> impl Iterator<Item = &[Neighbour]> {
         (0..self.len()).filter_map(|query| self.get(query))
     }
 }
 
-/// The points within a radius of each centre, in the order of [`Neighbor`].
+/// The points within a radius of each centre, in the order of [`Neighbour`].
 ///
 /// ```
 /// use range_search::{BruteForce, batch};
@@ -58,22 +58,22 @@ impl Lists {
 pub fn within(index: &impl RangeIndex, centers: &[[f32; 3]], radius: f32) -> Lists {
     let mut lists = Lists::new(centers.len());
     for &center in centers {
-        let start = lists.neighbors.len();
+        let start = lists.neighbours.len();
         index.for_each_within(center, radius, |id, distance_squared| {
-            lists.neighbors.push(Neighbor::new(id as u32, distance_squared));
+            lists.neighbours.push(Neighbour::new(id as u32, distance_squared));
         });
-        lists.neighbors[start..].sort_unstable();
+        lists.neighbours[start..].sort_unstable();
         lists.end();
     }
     lists
 }
 
-/// The `k` nearest points of each centre within a radius, in the order of [`Neighbor`].
+/// The `k` nearest points of each centre within a radius, in the order of [`Neighbour`].
 pub fn k_nearest(index: &impl RangeIndex, centers: &[[f32; 3]], k: usize, max_radius: f32) -> Lists {
     let (mut lists, mut found) = (Lists::new(centers.len()), Vec::new());
     for &center in centers {
         index.k_nearest(center, k, max_radius, &mut found);
-        lists.neighbors.extend_from_slice(&found);
+        lists.neighbours.extend_from_slice(&found);
         lists.end();
     }
     lists
@@ -97,9 +97,9 @@ fn parallel(centers: &[[f32; 3]], query: impl Fn(&[[f32; 3]]) -> Lists + Sync) -
     let parts: Vec<Lists> = centers.par_chunks(CHUNK).map(&query).collect();
     let mut lists = Lists::new(centers.len());
     for part in parts {
-        let start = lists.neighbors.len();
+        let start = lists.neighbours.len();
         lists.ends.extend(part.ends.iter().map(|end| start + end));
-        lists.neighbors.extend(part.neighbors);
+        lists.neighbours.extend(part.neighbours);
     }
     lists
 }

@@ -7,7 +7,7 @@ use crate::closest::Closest;
 use crate::error::{BuildError, check_count};
 use crate::index::RangeIndex;
 use crate::lanes::Lanes;
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Tests every point. The oracle of all other indices, and the fastest up to about a hundred points.
 ///
@@ -64,14 +64,14 @@ impl RangeIndex for BruteForce {
         self.points.scan(&ball, core::iter::once(0..self.len()), f)
     }
 
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>) {
         out.clear();
         if k == 0 {
             return;
         }
         let mut closest = Closest::new(k, max_radius * max_radius, out);
         self.for_each_within(center, max_radius, |id, distance_squared| {
-            closest.push(Neighbor::new(id as u32, distance_squared));
+            closest.push(Neighbour::new(id as u32, distance_squared));
         });
         closest.finish();
     }

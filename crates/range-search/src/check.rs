@@ -14,37 +14,31 @@ use core::ops::ControlFlow;
 
 use crate::ball::{Ball, distance_squared, is_finite};
 use crate::index::RangeIndex;
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
-/// A law that an index breaks, and the query that shows it.
-#[derive(Clone, Debug, PartialEq)]
+/// A law that is broken, and what shows it. The crates that are built on this one return it as well.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// What is wrong.
+    /// The law.
     pub law: &'static str,
-    /// The centre asked for.
-    pub center: [f32; 3],
-    /// The radius asked for.
-    pub radius: f32,
-    /// The number of neighbours asked for, if it was.
-    pub k: Option<usize>,
+    /// The counterexample: of an index, the query.
+    pub counterexample: String,
 }
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} (centre {:?}, radius {:e}", self.law, self.center, self.radius)?;
-        self.k.map_or(Ok(()), |k| write!(f, ", k = {k}"))?;
-        write!(f, ")")
+        write!(f, "{}, but {}", self.law, self.counterexample)
     }
 }
 
 impl core::error::Error for Violation {}
 
-/// What is within a radius, in the order of [`Neighbor`], by the rule: a loop over all points.
-pub fn expected(points: &[[f32; 3]], center: [f32; 3], radius: f32) -> Vec<Neighbor> {
+/// What is within a radius, in the order of [`Neighbour`], by the rule: a loop over all points.
+pub fn expected(points: &[[f32; 3]], center: [f32; 3], radius: f32) -> Vec<Neighbour> {
     let Some(ball) = Ball::new(center, radius) else { return Vec::new() };
     let finite = (0..).zip(points).filter(|(_, point)| is_finite(**point));
-    let all = finite.map(|(id, point)| Neighbor::new(id, distance_squared(*point, center)));
-    let mut found: Vec<_> = all.filter(|neighbor| neighbor.distance_squared() <= ball.radius_squared).collect();
+    let all = finite.map(|(id, point)| Neighbour::new(id, distance_squared(*point, center)));
+    let mut found: Vec<_> = all.filter(|neighbour| neighbour.distance_squared() <= ball.radius_squared).collect();
     found.sort_unstable();
     found
 }
@@ -58,12 +52,14 @@ pub fn expected(points: &[[f32; 3]], center: [f32; 3], radius: f32) -> Vec<Neigh
 /// The first law that is broken.
 pub fn check_index(index: &impl RangeIndex, points: &[[f32; 3]]) -> Result<(), Violation> {
     let finite = points.iter().filter(|point| is_finite(**point)).count();
-    let violation = |law| Violation { law, center: [0.0; 3], radius: 0.0, k: None };
-    if index.len() != finite || index.is_empty() != (finite == 0) {
-        return Err(violation("len is not the number of finite points"));
+    let (len, skipped) = (index.len(), index.skipped());
+    if len != finite || index.is_empty() != (finite == 0) {
+        let counterexample = format!("len is {len}, is_empty {}, for {finite} of them", index.is_empty());
+        return Err(Violation { law: "len is the number of finite points", counterexample });
     }
-    if index.skipped() != points.len() - finite {
-        return Err(violation("skipped is not the number of points that are not finite"));
+    if skipped != points.len() - finite {
+        let counterexample = format!("it is {skipped}, and there are {}", points.len() - finite);
+        return Err(Violation { law: "skipped is the number of points that are not finite", counterexample });
     }
     for center in centers(points) {
         for radius in radii(points, center) {
@@ -83,7 +79,13 @@ pub fn check_query(
     center: [f32; 3],
     radius: f32,
 ) -> Result<(), Violation> {
-    let hold = |law, holds: bool, k| if holds { Ok(()) } else { Err(Violation { law, center, radius, k }) };
+    let hold = |law, holds: bool, k: Option<usize>| {
+        if holds {
+            return Ok(());
+        }
+        let with_k = k.map_or(String::new(), |k| format!(", k = {k}"));
+        Err(Violation { law, counterexample: format!("not around {center:?}, radius {radius:e}{with_k}") })
+    };
     let expected = expected(points, center, radius);
     let visits = || {
         let mut visits = Vec::new();
@@ -93,15 +95,15 @@ pub fn check_query(
     let visited = visits();
     let sorted = |visits: &[(usize, u32)]| {
         let mut sorted: Vec<_> =
-            visits.iter().map(|(id, bits)| Neighbor::new(*id as u32, f32::from_bits(*bits))).collect();
+            visits.iter().map(|(id, bits)| Neighbour::new(*id as u32, f32::from_bits(*bits))).collect();
         sorted.sort_unstable();
         sorted
     };
-    hold("not each point within the radius is visited once, and no other", sorted(&visited) == expected, None)?;
-    hold("visits come in another order the second time", visits() == visited, None)?;
-    hold("within differs", index.within(center, radius) == expected, None)?;
-    hold("count_within differs", index.count_within(center, radius) == expected.len(), None)?;
-    hold("any_within differs", index.any_within(center, radius) != expected.is_empty(), None)?;
+    hold("each point within the radius is visited once, and no other", sorted(&visited) == expected, None)?;
+    hold("visits come in the same order the second time", visits() == visited, None)?;
+    hold("within is all that is visited, sorted", index.within(center, radius) == expected, None)?;
+    hold("count_within is the number of visits", index.count_within(center, radius) == expected.len(), None)?;
+    hold("any_within says whether anything is visited", index.any_within(center, radius) != expected.is_empty(), None)?;
 
     // Breaking after some visits leaves these.
     let stop = visited.len().div_ceil(2);
@@ -111,13 +113,13 @@ pub fn check_query(
         if before.len() == stop { ControlFlow::Break(id) } else { ControlFlow::Continue(()) }
     });
     let last = visited[..stop].last().map(|visit| visit.0);
-    hold("a break does not end the visits", before == visited[..stop] && flow.break_value() == last, None)?;
+    hold("a break ends the visits", before == visited[..stop] && flow.break_value() == last, None)?;
 
     // What was in the vector must not stay there.
-    let mut found = vec![Neighbor::new(u32::MAX, 0.0); 3];
+    let mut found = vec![Neighbour::new(u32::MAX, 0.0); 3];
     for k in [0, 1, 2, 7, 50, expected.len() / 2, expected.len(), points.len() + 1, usize::MAX] {
         index.k_nearest(center, k, radius, &mut found);
-        hold("k_nearest differs", found == expected[..k.min(expected.len())], Some(k))?;
+        hold("k_nearest are the first of within", found == expected[..k.min(expected.len())], Some(k))?;
     }
     Ok(())
 }

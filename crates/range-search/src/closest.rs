@@ -1,6 +1,6 @@
 //! Collects the nearest of many neighbours.
 
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Keeps the `k` nearest neighbours it is shown, in a vector of the caller's.
 ///
@@ -11,22 +11,22 @@ pub(crate) struct Closest<'a> {
     /// Neighbours collected before some are dropped.
     full: usize,
     /// Neighbours after this one are not wanted.
-    last: Neighbor,
-    found: &'a mut Vec<Neighbor>,
+    last: Neighbour,
+    found: &'a mut Vec<Neighbour>,
 }
 
 impl<'a> Closest<'a> {
     /// For the nearest `k > 0` up to a squared radius.
-    pub(crate) fn new(k: usize, radius_squared: f32, found: &'a mut Vec<Neighbor>) -> Self {
+    pub(crate) fn new(k: usize, radius_squared: f32, found: &'a mut Vec<Neighbour>) -> Self {
         found.clear();
         let full = k.saturating_mul(2).max(64);
-        Self { k, full, last: Neighbor::new(u32::MAX, radius_squared), found }
+        Self { k, full, last: Neighbour::new(u32::MAX, radius_squared), found }
     }
 
     #[inline(always)]
-    pub(crate) fn push(&mut self, neighbor: Neighbor) {
-        if neighbor <= self.last {
-            self.found.push(neighbor);
+    pub(crate) fn push(&mut self, neighbour: Neighbour) {
+        if neighbour <= self.last {
+            self.found.push(neighbour);
             if self.found.len() >= self.full {
                 self.shrink();
             }

@@ -6,7 +6,7 @@ use core::ops::ControlFlow;
 use crate::ball::{Ball, is_finite};
 use crate::error::{BuildError, check_count};
 use crate::lanes::Lanes;
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// So many queries or points are no longer divided.
 const FEW: usize = 64;
@@ -50,7 +50,7 @@ pub fn divide_and_conquer<P, Q>(
     queries: &[Q],
     center: impl Fn(&Q) -> [f32; 3],
     radius: f32,
-    mut f: impl FnMut(usize, &[Neighbor]),
+    mut f: impl FnMut(usize, &[Neighbour]),
 ) -> Result<(), BuildError> {
     let (points, mut finite, others) = prepare(points, position, queries, center, radius)?;
     let mut found = Vec::new();
@@ -74,7 +74,7 @@ pub fn par_divide_and_conquer<P, Q>(
     queries: &[Q],
     center: impl Fn(&Q) -> [f32; 3],
     radius: f32,
-    f: impl Fn(usize, &[Neighbor]) + Sync,
+    f: impl Fn(usize, &[Neighbour]) + Sync,
 ) -> Result<(), BuildError> {
     let (points, mut finite, others) = prepare(points, position, queries, center, radius)?;
     if !finite.is_empty() {
@@ -112,11 +112,11 @@ fn divide(queries: &mut [Query], points: &Lanes, radius: f32, conquer: &mut impl
 }
 
 #[cfg(feature = "rayon")]
-fn par_divide(queries: &mut [Query], points: &Lanes, radius: f32, f: &(impl Fn(usize, &[Neighbor]) + Sync)) {
+fn par_divide(queries: &mut [Query], points: &Lanes, radius: f32, f: &(impl Fn(usize, &[Neighbour]) + Sync)) {
     if queries.len() < MANY || is_few(queries, points) {
         let mut found = Vec::new();
         return divide(queries, points, radius, &mut |queries, points| {
-            conquer(queries, points, radius, &mut found, &mut |query, found: &[Neighbor]| f(query, found));
+            conquer(queries, points, radius, &mut found, &mut |query, found: &[Neighbour]| f(query, found));
         });
     }
     let [left, right] = halve(queries);
@@ -167,15 +167,15 @@ fn conquer(
     queries: &[Query],
     points: &Lanes,
     radius: f32,
-    found: &mut Vec<Neighbor>,
-    f: &mut impl FnMut(usize, &[Neighbor]),
+    found: &mut Vec<Neighbour>,
+    f: &mut impl FnMut(usize, &[Neighbour]),
 ) {
     for (query, center) in queries {
         found.clear();
         if let Some(ball) = Ball::new(*center, radius) {
             let all = core::iter::once(0..points.len());
             let ControlFlow::Continue(()) = points.scan(&ball, all, |id, distance_squared| {
-                found.push(Neighbor::new(id as u32, distance_squared));
+                found.push(Neighbour::new(id as u32, distance_squared));
                 ControlFlow::<Infallible>::Continue(())
             });
         }

@@ -3,7 +3,7 @@
 use core::convert::Infallible;
 use core::ops::ControlFlow;
 
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Finds points within a radius, and the nearest ones. Points are named by their positions in the slice that the index was
 /// built from: ids. Payloads stay with the caller.
@@ -28,7 +28,7 @@ use crate::neighbor::Neighbor;
 /// 1. [`try_for_each_within`](Self::try_for_each_within) visits each point within the radius once, no other point, with its
 ///    squared distance, and stops when told to.
 /// 2. The order of visits depends on nothing but index and query. Each index documents it; indices differ.
-/// 3. [`k_nearest`](Self::k_nearest) finds the first `k` of these points in the order of [`Neighbor`]: by squared distance, then by id.
+/// 3. [`k_nearest`](Self::k_nearest) finds the first `k` of these points in the order of [`Neighbour`]: by squared distance, then by id.
 ///
 /// [`check_index`](crate::check::check_index) tests them on anybody's implementation.
 pub trait RangeIndex {
@@ -48,7 +48,7 @@ pub trait RangeIndex {
 
     /// The `k` nearest points within the radius, nearest first, equal distances by id. Replaces what is in `out`, whose
     /// memory is used again.
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>);
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>);
 
     /// Whether there is nothing to be found.
     fn is_empty(&self) -> bool {
@@ -65,10 +65,10 @@ pub trait RangeIndex {
     }
 
     /// All points within the radius, nearest first, equal distances by id.
-    fn within(&self, center: [f32; 3], radius: f32) -> Vec<Neighbor> {
+    fn within(&self, center: [f32; 3], radius: f32) -> Vec<Neighbour> {
         let mut found = Vec::new();
         self.for_each_within(center, radius, |id, distance_squared| {
-            found.push(Neighbor::new(id as u32, distance_squared));
+            found.push(Neighbour::new(id as u32, distance_squared));
         });
         found.sort_unstable();
         found
@@ -87,7 +87,7 @@ pub trait RangeIndex {
     }
 
     /// The nearest point, the one with the smallest id if several are.
-    fn nearest(&self, center: [f32; 3]) -> Option<Neighbor> {
+    fn nearest(&self, center: [f32; 3]) -> Option<Neighbour> {
         let mut found = Vec::with_capacity(1);
         self.k_nearest(center, 1, f32::INFINITY, &mut found);
         found.first().copied()
@@ -112,7 +112,7 @@ impl<I: RangeIndex> RangeIndex for &I {
         (**self).try_for_each_within(center, radius, f)
     }
 
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>) {
         (**self).k_nearest(center, k, max_radius, out);
     }
 }

@@ -9,7 +9,7 @@ use crate::ball::{Ball, distance_squared, is_finite};
 use crate::closest::Closest;
 use crate::error::{BuildError, check_count};
 use crate::index::RangeIndex;
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Squares of the distances between coordinates up to this do not overflow.
 const LARGE: f32 = 1e18;
@@ -32,7 +32,7 @@ const LARGE: f32 = 1e18;
 /// use range_search::{KdTree, RangeIndex};
 /// let tree = KdTree::build(&[[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1000.0, 0.0, 0.0]], |p| *p)?;
 /// assert_eq!(tree.count_within([0.5, 0.0, 0.0], 0.5), 2);
-/// assert_eq!(tree.nearest([600.0, 0.0, 0.0]).map(|neighbor| neighbor.id()), Some(2));
+/// assert_eq!(tree.nearest([600.0, 0.0, 0.0]).map(|neighbour| neighbour.id()), Some(2));
 /// # Ok::<(), range_search::BuildError>(())
 /// ```
 pub struct KdTree {
@@ -122,7 +122,7 @@ impl RangeIndex for KdTree {
         flow
     }
 
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>) {
         out.clear();
         let Some(ball) = Ball::new(center, max_radius) else { return };
         if k == 0 {
@@ -131,7 +131,7 @@ impl RangeIndex for KdTree {
         let bound = self.bound_of_nearest(center, k).min(ball.reach * ball.reach);
         let mut closest = Closest::new(k, ball.radius_squared, out);
         self.for_each_near(center, enlarged(bound), |id, point| {
-            closest.push(Neighbor::new(id, distance_squared(point, center)));
+            closest.push(Neighbour::new(id, distance_squared(point, center)));
         });
         closest.finish();
     }

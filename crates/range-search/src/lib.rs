@@ -24,7 +24,7 @@
 //! ```
 //!
 //! # Concepts
-//! An *id* is a position in the input, a *slot* one in the grid's own order. A [`Neighbor`] is an id with a squared distance, ordered by
+//! An *id* is a position in the input, a *slot* one in the grid's own order. A [`Neighbour`] is an id with a squared distance, ordered by
 //! distance and then by id; that is the order of everything sorted. The order of visits is each index's own, documented there, and a function
 //! of its input alone, with any number of threads.
 //!
@@ -48,7 +48,7 @@ mod index;
 #[cfg(feature = "kiddo")]
 mod kd_tree;
 mod lanes;
-mod neighbor;
+mod neighbour;
 
 pub use ball::distance_squared;
 pub use brute_force::BruteForce;
@@ -58,11 +58,11 @@ pub use divide_and_conquer::divide_and_conquer;
 #[cfg(feature = "rayon")]
 pub use divide_and_conquer::par_divide_and_conquer;
 pub use error::BuildError;
-pub use grid::{HashGrid, Neighborhood, QueryRadius, SelfQuery};
+pub use grid::{HashGrid, Neighbourhood, QueryRadius, SelfQuery};
 pub use index::RangeIndex;
 #[cfg(feature = "kiddo")]
 pub use kd_tree::KdTree;
-pub use neighbor::Neighbor;
+pub use neighbour::Neighbour;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -8,15 +8,15 @@ use core::fmt;
 /// order that is: squared distances are not negative, and the bits of such numbers are ordered like the numbers.
 ///
 /// ```
-/// use range_search::Neighbor;
-/// let (near, far) = (Neighbor::new(7, 0.25), Neighbor::new(3, 4.0));
-/// assert!(near < far && Neighbor::new(3, 0.25) < near);
+/// use range_search::Neighbour;
+/// let (near, far) = (Neighbour::new(7, 0.25), Neighbour::new(3, 4.0));
+/// assert!(near < far && Neighbour::new(3, 0.25) < near);
 /// assert_eq!((far.id(), far.distance_squared(), far.distance()), (3, 4.0, 2.0));
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Neighbor(u64);
+pub struct Neighbour(u64);
 
-impl Neighbor {
+impl Neighbour {
     /// A point by its position in the input slice, and its squared distance. The order is meant for distances that are
     /// neither negative nor NaN.
     #[inline(always)]
@@ -43,8 +43,8 @@ impl Neighbor {
     }
 }
 
-impl fmt::Debug for Neighbor {
+impl fmt::Debug for Neighbour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Neighbor").field("id", &self.id()).field("distance_squared", &self.distance_squared()).finish()
+        f.debug_struct("Neighbour").field("id", &self.id()).field("distance_squared", &self.distance_squared()).finish()
     }
 }

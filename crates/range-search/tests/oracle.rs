@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use range_search::check::{Violation, check_index, check_query, expected, point_sets};
-use range_search::{BruteForce, Bvh, HashGrid, KdTree, Neighbor, QueryRadius, RangeIndex, batch, divide_and_conquer};
+use range_search::{BruteForce, Bvh, HashGrid, KdTree, Neighbour, QueryRadius, RangeIndex, batch, divide_and_conquer};
 use range_search::{BuildError, par_divide_and_conquer};
 
 fn coordinate() -> impl Strategy<Value = f32> {
@@ -89,15 +89,15 @@ fn compare_self_query_of(
     radius_of: impl Fn(usize) -> f32,
 ) {
     let mut slot = 0;
-    grid.self_query(radius).for_each(|neighborhood| {
-        let id = neighborhood.id();
+    grid.self_query(radius).for_each(|neighbourhood| {
+        let id = neighbourhood.id();
         let radius = radius_of(id);
-        assert_eq!((neighborhood.slot(), grid.id(slot)), (slot, id));
-        assert_eq!(neighborhood.position().map(f32::to_bits), points[id].map(f32::to_bits));
+        assert_eq!((neighbourhood.slot(), grid.id(slot)), (slot, id));
+        assert_eq!(neighbourhood.position().map(f32::to_bits), points[id].map(f32::to_bits));
         let mut one_by_one = Vec::new();
         grid.for_each_within(points[id], radius, |id, distance_squared| one_by_one.push((id, distance_squared)));
-        assert_eq!(neighborhood.iter().collect::<Vec<_>>(), one_by_one);
-        assert!(neighborhood.slots().windows(2).all(|pair| pair[0] < pair[1]));
+        assert_eq!(neighbourhood.iter().collect::<Vec<_>>(), one_by_one);
+        assert!(neighbourhood.slots().windows(2).all(|pair| pair[0] < pair[1]));
         slot += 1;
     });
     assert_eq!(slot, grid.len());
@@ -147,7 +147,7 @@ impl<F: Fn(usize, f32) -> Option<(usize, f32)>> RangeIndex for Wrong<F> {
         })
     }
 
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>) {
         self.0.k_nearest(center, k, max_radius, out);
     }
 }
@@ -186,7 +186,7 @@ fn parallel_is_serial() {
         assert_eq!(format!("{serial:?}"), format!("{parallel:?}"));
     }
     let grid = HashGrid::build(&points, |p| *p, 0.02).unwrap();
-    let sums = |n: range_search::Neighborhood<'_>| (n.id(), n.distances_squared().iter().sum::<f32>().to_bits());
+    let sums = |n: range_search::Neighbourhood<'_>| (n.id(), n.distances_squared().iter().sum::<f32>().to_bits());
     assert_eq!(grid.self_query(0.02).map(sums), grid.self_query(0.02).par_map(sums));
 
     let centers = &points[..3000];
@@ -219,13 +219,13 @@ fn parallel_is_serial() {
 fn a_million_coincident_points_are_no_trouble() {
     let mut points = vec![[0.25_f32, 0.5, 0.75]; 1_000_000];
     points.push([1.0, 1.0, 1.0]);
-    let nearest: Vec<_> = (0..3).map(|id| Neighbor::new(id, 0.0)).collect();
+    let nearest: Vec<_> = (0..3).map(|id| Neighbour::new(id, 0.0)).collect();
     let mut found = Vec::new();
-    let mut ask = |index: &dyn Fn(&mut Vec<Neighbor>) -> usize| {
+    let mut ask = |index: &dyn Fn(&mut Vec<Neighbour>) -> usize| {
         assert_eq!(index(&mut found), 1_000_000);
         assert_eq!(found, nearest);
     };
-    fn both(index: &impl RangeIndex, found: &mut Vec<Neighbor>) -> usize {
+    fn both(index: &impl RangeIndex, found: &mut Vec<Neighbour>) -> usize {
         index.k_nearest([0.25, 0.5, 0.75], 3, f32::INFINITY, found);
         index.count_within([0.25, 0.5, 0.75], 0.1)
     }

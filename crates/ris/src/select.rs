@@ -107,6 +107,9 @@ impl<F: Float> Select<F> for PrefixSums {
 /// Not monotonic: stratification of the number survives only in part. Worth it if many samples are selected from the same
 /// candidates. Weights that are not positive and finite count as zero.
 ///
+/// `qmc_sampling::warp::AliasTable` is a distribution: it refuses such weights, and returns probabilities. This one is a [`Select`] for
+/// weights as they come, none of them positive included, and neither crate takes the other for it.
+///
 /// **Source.** Walker 1974; built as by Vose 1991.
 ///
 /// ```

@@ -47,6 +47,14 @@ impl Outcome {
     }
 }
 
+/// That of the crates, which have but laws.
+#[cfg(any(feature = "path-space-filter", feature = "photon-map", feature = "range-search"))]
+impl From<range_search::check::Violation> for Violation {
+    fn from(broken: range_search::check::Violation) -> Self {
+        Self::Law { law: broken.law, counterexample: broken.counterexample }
+    }
+}
+
 /// What the checkers share.
 mod tools {
     use crate::verdict::Violation;

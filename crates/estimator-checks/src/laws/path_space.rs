@@ -6,7 +6,6 @@ pub use path_space_filter::check_similarity;
 
 use super::{Law, hold, near};
 use crate::outcome::Outcome;
-use crate::verdict::Violation;
 
 /// Weights that contributions are added with.
 const WEIGHTS: [f32; 6] = [1.0, 0.5, 4.0, 0.3, 1e-3, 7.0];
@@ -14,14 +13,6 @@ const WEIGHTS: [f32; 6] = [1.0, 0.5, 4.0, 0.3, 1e-3, 7.0];
 const TIMES: [u32; 6] = [1, 2, 3, 7, 100, 1000];
 /// Of the law on equal contributions: what is at least as coarse as `f32` has fewer digits than its sum.
 const SINGLE_PRECISION: f64 = f32::EPSILON as f64 / 2.0;
-
-impl From<path_space_filter::Violation> for Violation {
-    fn from(broken: path_space_filter::Violation) -> Self {
-        let law =
-            "weights of vertices are finite and not negative, positive for a vertex with itself, and the same again";
-        Self::Law { law, counterexample: broken.to_string() }
-    }
-}
 
 /// Checks the laws of a [`Contribution`] on samples, which had better differ in all components.
 ///

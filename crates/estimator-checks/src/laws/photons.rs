@@ -11,11 +11,3 @@
 //! ```
 
 pub use photon_map::check::{Place, check_deposition, check_flux, check_positive, places};
-
-use crate::verdict::Violation;
-
-impl From<photon_map::check::Violation> for Violation {
-    fn from(broken: photon_map::check::Violation) -> Self {
-        Self::Law { law: broken.law, counterexample: broken.counterexample }
-    }
-}

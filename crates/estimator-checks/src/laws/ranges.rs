@@ -13,12 +13,3 @@
 //! ```
 
 pub use range_search::check::{check_index, check_query, point_sets};
-
-use crate::verdict::Violation;
-
-impl From<range_search::check::Violation> for Violation {
-    fn from(broken: range_search::check::Violation) -> Self {
-        let law = "a query visits the points within the radius, each once, in a fixed order";
-        Self::Law { law, counterexample: broken.to_string() }
-    }
-}

@@ -1,6 +1,6 @@
 //! Neighbours by a grid for each order of magnitude of the radius.
 
-use range_search::{HashGrid, Neighborhood};
+use range_search::{HashGrid, Neighbourhood};
 
 use super::mean::{Counted, Mean, Rule, over_squared};
 use super::prepared::{Iterated, Prepared};
@@ -96,7 +96,7 @@ where
         let of_part = |part: usize| {
             let slots = part * PART..level.radii.len().min((part + 1) * PART);
             let mut found: Vec<Option<Counted<C>>> = Vec::with_capacity(slots.len());
-            query.for_each_in(slots, |neighborhood| found.push(level.mean(&values, rule, &neighborhood)));
+            query.for_each_in(slots, |neighbourhood| found.push(level.mean(&values, rule, &neighbourhood)));
             found
         };
         let found = parallel::map_parts(level.radii.len().div_ceil(PART), of_part);
@@ -115,18 +115,18 @@ impl<F> Level<F> {
         &self,
         values: &[C],
         rule: &Rule<'_, S, K>,
-        neighborhood: &Neighborhood<'_>,
+        neighbourhood: &Neighbourhood<'_>,
     ) -> Option<Counted<C>>
     where
         C: Contribution,
         S: Similarity<V, Features = F>,
         K: Kernel,
     {
-        let center = neighborhood.slot();
+        let center = neighbourhood.slot();
         let over = over_squared(self.radii[center]);
         let features = &self.features[center];
         let mut mean = Mean::new();
-        for (&slot, distance_squared) in neighborhood.slots().iter().zip(neighborhood.distances_squared()) {
+        for (&slot, distance_squared) in neighbourhood.slots().iter().zip(neighbourhood.distances_squared()) {
             let slot = slot as usize;
             let weight = rule.weight(features, &self.features[slot], distance_squared * over, slot == center);
             mean.add(weight, values[slot]);

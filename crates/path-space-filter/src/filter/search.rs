@@ -125,7 +125,7 @@ where
 {
     let found: Vec<OnceLock<Counted<C>>> = prepared.values.iter().map(|_| OnceLock::new()).collect();
     let widest = prepared.radii.iter().fold(-1.0_f32, |widest, &radius| widest.max(radius));
-    let visit = |i: usize, neighbours: &[range_search::Neighbor]| {
+    let visit = |i: usize, neighbours: &[range_search::Neighbour]| {
         let (features, radius) = (&prepared.features[i], prepared.radii[i]);
         let over = over_squared(radius);
         let mut mean = Mean::new();
@@ -147,7 +147,7 @@ where
 }
 
 /// Visits the neighbours of all positions. Of too many there are none, and everybody keeps what they have.
-fn divide(positions: &[[f32; 3]], radius: f32, visit: &(dyn Fn(usize, &[range_search::Neighbor]) + Sync)) {
+fn divide(positions: &[[f32; 3]], radius: f32, visit: &(dyn Fn(usize, &[range_search::Neighbour]) + Sync)) {
     #[cfg(feature = "rayon")]
     let _ = range_search::par_divide_and_conquer(positions, |x| *x, positions, |x| *x, radius, visit);
     #[cfg(not(feature = "rayon"))]

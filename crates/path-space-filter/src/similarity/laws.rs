@@ -2,41 +2,7 @@
 
 use super::Similarity;
 
-/// How a similarity weight breaks its laws.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Violation {
-    /// A weight is negative, infinite or NaN.
-    #[error("the weight of vertex {other} at vertex {center} is {weight}")]
-    Weight {
-        /// Position of the centre in the slice.
-        center: usize,
-        /// Position of the other.
-        other: usize,
-        /// Its weight.
-        weight: f32,
-    },
-    /// A vertex is not similar to itself.
-    #[error("the weight of vertex {center} with itself is {weight}, not positive")]
-    Itself {
-        /// Position in the slice.
-        center: usize,
-        /// Its weight.
-        weight: f32,
-    },
-    /// The same question has two answers.
-    #[error("the weight of vertex {other} at vertex {center} is {first}, then {second}")]
-    Answers {
-        /// Position of the centre in the slice.
-        center: usize,
-        /// Position of the other.
-        other: usize,
-        /// The first answer.
-        first: f32,
-        /// The second.
-        second: f32,
-    },
-}
+pub use range_search::check::Violation;
 
 /// Tests the laws of [`Similarity`] on all pairs of the given vertices.
 ///
@@ -56,17 +22,17 @@ pub fn check_similarity<V, S: Similarity<V>>(similarity: &S, vertices: &[V]) -> 
     for (i, center) in features.iter().enumerate() {
         for (j, other) in features.iter().enumerate() {
             let weight = similarity.weight(center, other);
-            if !(weight >= 0.0 && weight.is_finite()) {
-                return Err(Violation::Weight { center: i, other: j, weight });
-            }
-            if i == j && weight == 0.0 {
-                return Err(Violation::Itself { center: i, weight });
-            }
+            let shown = || format!("the weight of vertex {j} at vertex {i} is {weight}");
+            hold("weights are finite and not negative", weight >= 0.0 && weight.is_finite(), shown)?;
+            hold("the weight of a vertex with itself is positive", i != j || weight > 0.0, shown)?;
             let again = similarity.weight(&similarity.features(&vertices[i]), &similarity.features(&vertices[j]));
-            if again.to_bits() != weight.to_bits() {
-                return Err(Violation::Answers { center: i, other: j, first: weight, second: again });
-            }
+            let shown = || format!("{}, then {again}", shown());
+            hold("the same vertices have the same weight", again.to_bits() == weight.to_bits(), shown)?;
         }
     }
     Ok(())
+}
+
+fn hold(law: &'static str, holds: bool, counterexample: impl FnOnce() -> String) -> Result<(), Violation> {
+    if holds { Ok(()) } else { Err(Violation { law, counterexample: counterexample() }) }
 }

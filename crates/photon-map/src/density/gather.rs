@@ -1,6 +1,6 @@
 //! How far to look for photons.
 
-use range_search::{Neighbor, RangeIndex};
+use range_search::{Neighbour, RangeIndex};
 
 use crate::Kernel;
 
@@ -73,7 +73,7 @@ fn positive_radius(radius: f32) -> Result<f32, GatherError> {
 /// radius need none.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    pub(crate) found: Vec<Neighbor>,
+    pub(crate) found: Vec<Neighbour>,
 }
 
 impl Gather {

@@ -12,6 +12,8 @@ use alloc::vec::Vec;
 /// In single precision a uniform number has 24 bits, of which `log2 n` go into the choice of a bin: for more than some
 /// ten thousand entries take `AliasTable<f64>`.
 ///
+/// `ris::AliasTable` takes weights as they come, not positive ones as zeros, and returns no probabilities: it selects among candidates.
+///
 /// Source: Walker (1974), built in linear time as by Vose (1991).
 ///
 /// ```

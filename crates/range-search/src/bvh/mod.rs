@@ -10,7 +10,7 @@ use crate::closest::Closest;
 use crate::error::BuildError;
 use crate::index::RangeIndex;
 use crate::lanes::{Lanes, WIDTH};
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Nodes above each other at most: each leaves one waiting.
 const MAX_DEPTH: usize = 64;
@@ -56,7 +56,7 @@ impl Node {
 /// use range_search::{Bvh, RangeIndex};
 /// let bvh = Bvh::build(&[[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1000.0, 0.0, 0.0]], |p| *p)?;
 /// assert_eq!(bvh.count_within([0.5, 0.0, 0.0], 0.5), 2);
-/// assert_eq!(bvh.nearest([600.0, 0.0, 0.0]).map(|neighbor| neighbor.id()), Some(2));
+/// assert_eq!(bvh.nearest([600.0, 0.0, 0.0]).map(|neighbour| neighbour.id()), Some(2));
 /// # Ok::<(), range_search::BuildError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -140,7 +140,7 @@ impl RangeIndex for Bvh {
     }
 
     /// Some points near the centre give a radius that holds the nearest ones; all within it are tested together.
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>) {
         out.clear();
         let Some(ball) = Ball::new(center, max_radius) else { return };
         if k == 0 {
@@ -150,7 +150,7 @@ impl RangeIndex for Bvh {
         let ball = Ball { radius_squared, ..ball };
         let mut closest = Closest::new(k, ball.radius_squared, out);
         let ControlFlow::Continue(()) = self.points.scan(&ball, self.leaves(ball), |id, distance_squared| {
-            closest.push(Neighbor::new(id as u32, distance_squared));
+            closest.push(Neighbour::new(id as u32, distance_squared));
             ControlFlow::<Infallible>::Continue(())
         });
         closest.finish();
@@ -166,11 +166,11 @@ impl Bvh {
     /// A squared radius that holds the `k > 0` nearest points: that of the `k`-th nearest among `2 k` points of the leaves
     /// whose boxes are nearest. Infinite if there are fewer than `k`.
     #[inline(always)]
-    fn bound_of_nearest(&self, center: [f32; 3], k: usize, found: &mut Vec<Neighbor>) -> f32 {
+    fn bound_of_nearest(&self, center: [f32; 3], k: usize, found: &mut Vec<Neighbour>) -> f32 {
         let enough = k.saturating_mul(2).max(WIDTH);
         let mut frontier = Frontier::new();
         if !self.nodes.is_empty() {
-            frontier.insert(Neighbor::new(0, 0.0));
+            frontier.insert(Neighbour::new(0, 0.0));
         }
         while found.len() < enough
             && let Some(nearest) = frontier.pop()
@@ -179,11 +179,11 @@ impl Bvh {
             if node.blocks > 0 {
                 let slots = self.slots(node).take(enough - found.len());
                 found.extend(slots.map(|slot| {
-                    Neighbor::new(self.points.id(slot), distance_squared(self.points.position(slot), center))
+                    Neighbour::new(self.points.id(slot), distance_squared(self.points.position(slot), center))
                 }));
             } else {
                 for child in [node.first, node.first + 1] {
-                    frontier.insert(Neighbor::new(child, self.nodes[child as usize].distance_squared(center)));
+                    frontier.insert(Neighbour::new(child, self.nodes[child as usize].distance_squared(center)));
                 }
             }
         }
@@ -193,23 +193,23 @@ impl Bvh {
 
 /// Nodes that wait, the nearest one last. If there are too many the farthest are forgotten.
 struct Frontier {
-    nodes: [Neighbor; FRONTIER],
+    nodes: [Neighbour; FRONTIER],
     len: usize,
 }
 
 impl Frontier {
     fn new() -> Self {
-        Self { nodes: [Neighbor::new(0, 0.0); FRONTIER], len: 0 }
+        Self { nodes: [Neighbour::new(0, 0.0); FRONTIER], len: 0 }
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<Neighbor> {
+    fn pop(&mut self) -> Option<Neighbour> {
         self.len = self.len.checked_sub(1)?;
         Some(self.nodes[self.len])
     }
 
     #[inline(always)]
-    fn insert(&mut self, node: Neighbor) {
+    fn insert(&mut self, node: Neighbour) {
         if self.len == FRONTIER {
             self.nodes.copy_within(1.., 0);
             self.len -= 1;

@@ -8,7 +8,7 @@ mod self_query;
 use crate::error::BuildError;
 use crate::lanes::Lanes;
 use cells::{CellBounds, Layout, Scale};
-pub use self_query::{Neighborhood, QueryRadius, SelfQuery};
+pub use self_query::{Neighbourhood, QueryRadius, SelfQuery};
 
 /// A grid of cubic cells over all of space; the points of a cell lie together, in the order of their ids.
 ///
@@ -37,7 +37,7 @@ pub use self_query::{Neighborhood, QueryRadius, SelfQuery};
 /// let mut flux = 0.0;
 /// grid.for_each_within([0.1, 0.0, 0.0], 1.0, |id, _distance_squared| flux += photons[id].flux);
 /// assert_eq!(flux, 0.5);
-/// assert_eq!(grid.nearest([1.9, 0.0, 0.0]).map(|neighbor| neighbor.id()), Some(2));
+/// assert_eq!(grid.nearest([1.9, 0.0, 0.0]).map(|neighbour| neighbour.id()), Some(2));
 /// # Ok::<(), range_search::BuildError>(())
 /// ```
 #[derive(Clone, Debug)]

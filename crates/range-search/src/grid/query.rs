@@ -8,7 +8,7 @@ use super::cells::{CellBounds, Layout};
 use crate::ball::Ball;
 use crate::closest::Closest;
 use crate::index::RangeIndex;
-use crate::neighbor::Neighbor;
+use crate::neighbour::Neighbour;
 
 /// Ranges of slots kept on the stack. More rows than that (half of that, if hashed) need the heap.
 const FEW_RANGES: usize = 32;
@@ -154,7 +154,7 @@ impl RangeIndex for HashGrid {
     }
 
     /// Looks within growing radii, until there are enough points or no larger radius.
-    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbor>) {
+    fn k_nearest(&self, center: [f32; 3], k: usize, max_radius: f32, out: &mut Vec<Neighbour>) {
         out.clear();
         let Some(largest) = Ball::new(center, max_radius) else { return };
         if k == 0 || self.is_empty() {
@@ -171,7 +171,7 @@ impl RangeIndex for HashGrid {
             }
             let mut closest = Closest::new(k, ball.radius_squared, out);
             let ControlFlow::Continue(()) = self.points.scan(&ball, ranges.iter(), |id, distance_squared| {
-                closest.push(Neighbor::new(id as u32, distance_squared));
+                closest.push(Neighbour::new(id as u32, distance_squared));
                 ControlFlow::<Infallible>::Continue(())
             });
             // Points that were not found are farther away than those that were.

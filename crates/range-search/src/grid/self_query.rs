@@ -46,9 +46,9 @@ impl<F: Fn(usize) -> f32> QueryRadius for F {
 /// let heights = [1.0_f32, 3.0, 10.0];
 /// let grid = HashGrid::build(&[[0.0_f32, 0.0, 0.0], [0.5, 0.0, 0.0], [9.0, 0.0, 0.0]], |p| *p, 1.0)?;
 /// let mut means = [0.0; 3];
-/// grid.self_query(1.0).for_each(|neighborhood| {
-///     let sum: f32 = neighborhood.iter().map(|(id, _distance_squared)| heights[id]).sum();
-///     means[neighborhood.id()] = sum / neighborhood.len() as f32;
+/// grid.self_query(1.0).for_each(|neighbourhood| {
+///     let sum: f32 = neighbourhood.iter().map(|(id, _distance_squared)| heights[id]).sum();
+///     means[neighbourhood.id()] = sum / neighbourhood.len() as f32;
 /// });
 /// assert_eq!(means, [2.0, 2.0, 10.0]);
 /// # Ok::<(), range_search::BuildError>(())
@@ -61,7 +61,7 @@ pub struct SelfQuery<'a, R = f32> {
 
 /// A point and its neighbours.
 #[derive(Clone, Copy, Debug)]
-pub struct Neighborhood<'a> {
+pub struct Neighbourhood<'a> {
     grid: &'a HashGrid,
     slot: usize,
     position: [f32; 3],
@@ -69,7 +69,7 @@ pub struct Neighborhood<'a> {
     distances_squared: &'a [f32],
 }
 
-impl<'a> Neighborhood<'a> {
+impl<'a> Neighbourhood<'a> {
     /// The point, as a position in the input.
     #[inline]
     pub fn id(&self) -> usize {
@@ -129,7 +129,7 @@ impl HashGrid {
     /// use range_search::HashGrid;
     /// let grid = HashGrid::build(&[[0.0_f32, 0.0, 0.0], [0.5, 0.0, 0.0], [0.9, 0.0, 0.0]], |p| *p, 1.0)?;
     /// let radii = [1.0, 0.45, -1.0];
-    /// let counts = grid.self_query(|slot| radii[grid.id(slot)]).map(|neighborhood| neighborhood.len());
+    /// let counts = grid.self_query(|slot| radii[grid.id(slot)]).map(|neighbourhood| neighbourhood.len());
     /// assert_eq!(counts, [3, 2, 0]);
     /// # Ok::<(), range_search::BuildError>(())
     /// ```
@@ -140,7 +140,7 @@ impl HashGrid {
 
 impl<R: QueryRadius> SelfQuery<'_, R> {
     /// Calls `f` with the neighbourhood of each point, in the order of slots.
-    pub fn for_each(&self, mut f: impl FnMut(Neighborhood<'_>)) {
+    pub fn for_each(&self, mut f: impl FnMut(Neighbourhood<'_>)) {
         self.visit(0..self.grid.points.len(), &mut f);
     }
 
@@ -148,21 +148,21 @@ impl<R: QueryRadius> SelfQuery<'_, R> {
     ///
     /// # Panics
     /// If there are no such slots.
-    pub fn for_each_in(&self, slots: core::ops::Range<usize>, mut f: impl FnMut(Neighborhood<'_>)) {
+    pub fn for_each_in(&self, slots: core::ops::Range<usize>, mut f: impl FnMut(Neighbourhood<'_>)) {
         assert!(slots.end <= self.grid.points.len(), "slots {slots:?} of {}", self.grid.points.len());
         self.visit(slots, &mut f);
     }
 
     /// What `f` makes of each neighbourhood, in the order of slots; [`HashGrid::restore`] brings it into the order of the input.
-    pub fn map<T>(&self, mut f: impl FnMut(Neighborhood<'_>) -> T) -> Vec<T> {
+    pub fn map<T>(&self, mut f: impl FnMut(Neighbourhood<'_>) -> T) -> Vec<T> {
         let mut results = Vec::with_capacity(self.grid.points.len());
-        self.for_each(|neighborhood| results.push(f(neighborhood)));
+        self.for_each(|neighbourhood| results.push(f(neighbourhood)));
         results
     }
 
     /// As [`for_each`](Self::for_each), on all threads of rayon's pool: the same neighbourhoods, in any order.
     #[cfg(feature = "rayon")]
-    pub fn par_for_each(&self, f: impl Fn(Neighborhood<'_>) + Sync)
+    pub fn par_for_each(&self, f: impl Fn(Neighbourhood<'_>) + Sync)
     where
         R: Sync,
     {
@@ -172,7 +172,7 @@ impl<R: QueryRadius> SelfQuery<'_, R> {
 
     /// As [`map`](Self::map), on all threads of rayon's pool: the same result.
     #[cfg(feature = "rayon")]
-    pub fn par_map<T: Send>(&self, f: impl Fn(Neighborhood<'_>) -> T + Sync) -> Vec<T>
+    pub fn par_map<T: Send>(&self, f: impl Fn(Neighbourhood<'_>) -> T + Sync) -> Vec<T>
     where
         R: Sync,
     {
@@ -181,7 +181,7 @@ impl<R: QueryRadius> SelfQuery<'_, R> {
             .chunks()
             .map(|slots| {
                 let mut results = Vec::with_capacity(slots.len());
-                self.visit(slots, &mut |neighborhood| results.push(f(neighborhood)));
+                self.visit(slots, &mut |neighbourhood| results.push(f(neighbourhood)));
                 results
             })
             .collect();
@@ -196,7 +196,7 @@ impl<R: QueryRadius> SelfQuery<'_, R> {
     }
 
     /// Neighbourhoods of the points in a range of slots.
-    fn visit(&self, slots: core::ops::Range<usize>, f: &mut impl FnMut(Neighborhood<'_>)) {
+    fn visit(&self, slots: core::ops::Range<usize>, f: &mut impl FnMut(Neighbourhood<'_>)) {
         let grid = self.grid;
         let mut candidates = Candidates::default();
         let mut start = slots.start;
@@ -236,7 +236,7 @@ impl<R: QueryRadius> SelfQuery<'_, R> {
                     Some(ball) => candidates.find(&ball),
                     None => (&[][..], &[][..]),
                 };
-                f(Neighborhood { grid, slot, position, slots, distances_squared });
+                f(Neighbourhood { grid, slot, position, slots, distances_squared });
             }
             start = end;
         }
