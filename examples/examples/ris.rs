@@ -18,8 +18,8 @@ use ris::{Budget, CostModel, Objective, Pairwise, Reservoir, Ris, VarianceModel,
 const HALF: f64 = 4.0;
 const HEIGHT: f64 = 1.0;
 const ESTIMATES: u64 = 100_000;
-/// A shadow ray costs as much as twenty candidates.
-const COST: CostModel = CostModel { candidate: 1.0, sample: 20.0 };
+/// Of a candidate, and of a sample: a shadow ray costs as much as twenty candidates.
+const COSTS: [f64; 2] = [1.0, 20.0];
 /// Time per estimate, in candidates.
 const TIME: f64 = 60.0;
 
@@ -74,11 +74,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let y = [(2.0 * pilot() - 1.0) * HALF, (2.0 * pilot() - 1.0) * HALF];
         model.add([light(&y)], unshadowed(&y), density);
     }
-    let time_of = |candidates: f64| Budget::within(candidates, COST, TIME);
+    let cost = CostModel::new(COSTS[0], COSTS[1])?;
+    let time_of = |candidates: f64| Budget::within(candidates, cost, TIME);
     let budgets = [
         ("importance sampling", time_of(1.0)),
-        ("robust, M = T_Y/T_X", time_of(f64::from(COST.robust().candidates))),
-        ("optimal, equation 3", model.optimal(COST, TIME, Objective::NormOfParts)),
+        ("robust, M = T_Y/T_X", time_of(cost.robust().candidates())),
+        ("optimal, equation 3", model.optimal(cost, TIME, Objective::NormOfParts)),
         ("one sample", time_of(f64::INFINITY)),
     ];
 
@@ -88,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let ris = Ris::new(budget);
         let (mean, variance) = measure(|mut u| ris.estimate(&lamp, &unshadowed, &mut u, light));
         let (error, predicted) = (mean - truth(), model.predict(budget)[0]);
-        let Budget { candidates, samples } = budget;
+        let (candidates, samples) = (budget.candidates(), budget.samples());
         println!("{name:<20} {candidates:>6.2} {samples:>6.2} {error:>+10.5} {variance:>10.5} {predicted:>10.5}");
         assert!(error.abs() < 5.0 * (variance / ESTIMATES as f64).sqrt(), "{name} is biased");
         assert!((predicted / variance - 1.0).abs() < 0.15, "{name}: predicted {predicted}");

@@ -135,17 +135,17 @@ impl ResamplingSettings {
         probes: Option<&'a VisibilityProbes>,
     ) -> Result<ResampledDirect<'a, AnyChoice>, CostError> {
         let mut direct = ResampledDirect {
-            budget: Budget { candidates: 1.0, samples: self.samples },
+            budget: Budget::new(1.0, self.samples.into()),
             choice: AnyChoice::new(self.candidate_lights, scene.emitters()),
             mix: self.candidate_mix,
             environment: self.environment_candidates,
             target: self.target,
             probes,
         };
-        direct.budget.candidates = match self.candidates {
-            Candidates::Count(count) => count,
-            Candidates::Robust => measure_cost(scene, samplers, &direct)?.robust().candidates,
-        };
+        direct.budget = direct.budget.with_candidates(match self.candidates {
+            Candidates::Count(count) => count.into(),
+            Candidates::Robust => measure_cost(scene, samplers, &direct)?.robust().candidates(),
+        });
         Ok(direct)
     }
 

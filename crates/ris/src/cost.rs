@@ -15,16 +15,14 @@ use alloc::vec::Vec;
 /// ```
 /// use ris::CostModel;
 /// let cost = CostModel::new(2.0, 30.0)?;
-/// assert_eq!(cost.robust().candidates, 15.0); // M = T_Y / T_X
+/// assert_eq!(cost.robust().candidates(), 15.0); // M = T_Y / T_X
 /// assert!(CostModel::new(0.0, 1.0).is_err());
 /// # Ok::<(), ris::CostError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CostModel {
-    /// `T_X`.
-    pub candidate: f64,
-    /// `T_Y`.
-    pub sample: f64,
+    candidate: f64,
+    sample: f64,
 }
 
 /// Why costs make no sense.
@@ -59,7 +57,7 @@ impl CostModel {
     ///
     /// # Errors
     /// If a candidate costs nothing, or a cost is negative or not finite.
-    pub fn new(candidate: f64, sample: f64) -> Result<Self, CostError> {
+    pub const fn new(candidate: f64, sample: f64) -> Result<Self, CostError> {
         if !(candidate > 0.0 && candidate.is_finite()) {
             return Err(CostError::Candidate(candidate));
         }
@@ -67,6 +65,20 @@ impl CostModel {
             return Err(CostError::Sample(sample));
         }
         Ok(Self { candidate, sample })
+    }
+
+    /// `T_X`, positive.
+    #[inline]
+    #[must_use]
+    pub const fn candidate(&self) -> f64 {
+        self.candidate
+    }
+
+    /// `T_Y`.
+    #[inline]
+    #[must_use]
+    pub const fn sample(&self) -> f64 {
+        self.sample
     }
 
     /// From timings of real evaluations, by their [`robust_mean`]. Each timing is the time of one evaluation, or of a block of
@@ -95,7 +107,7 @@ impl CostModel {
     ///     || { std::hint::black_box(work(100)); 1 },
     ///     || { std::hint::black_box(work(1000)); 1 },
     /// )?;
-    /// assert!(cost.robust().candidates >= 1.0);
+    /// assert!(cost.robust().candidates() >= 1.0);
     /// # }
     /// # Ok::<(), ris::CostError>(())
     /// ```
@@ -126,9 +138,9 @@ impl CostModel {
     /// It gives candidates and samples equal time. Within any time no other choice has more than twice its `M N` and none more
     /// than twice its `N`, so, for real counts, **if `e3 >= e2` in every component** its variance is at most twice the least. Where more candidates hurt
     /// (`e3 < e2`) the bound fails, and `M = 1` is the choice; see [`VarianceModel`](crate::VarianceModel).
+    #[must_use]
     pub fn robust(&self) -> crate::Budget {
-        let ratio = self.sample / self.candidate;
-        crate::Budget { candidates: if ratio > 1.0 { ratio as f32 } else { 1.0 }, samples: 1.0 }
+        crate::Budget::new(self.sample / self.candidate, 1.0)
     }
 }
 

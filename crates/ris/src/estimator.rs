@@ -32,7 +32,7 @@ use crate::{Budget, Float, Reservoir, Source, Target, Uniform};
 ///
 /// // The integral of (x, x^2) over [0, 2] is (2, 8/3). The target is x.
 /// let uniform_source = from_fn(|u: &mut dyn FnMut() -> f64| (2.0 * u(), 0.5), |_: &f64| 0.5);
-/// let ris = Ris::new(Budget { candidates: 4.5, samples: 1000.0 });
+/// let ris = Ris::new(Budget::new(4.5, 1000.0));
 /// let mut state = 1_u64;
 /// let mut uniform = || {
 ///     state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407); // Knuth's
@@ -72,10 +72,10 @@ impl Ris {
         uniform: &mut impl Uniform<F>,
         mut add: impl FnMut(&X, F),
     ) {
-        let samples = Budget::round(self.budget.samples, uniform);
+        let samples = Budget::round(self.budget.samples(), uniform);
         let part = F::ONE / F::from_f64(f64::from(samples));
         for _ in 0..samples {
-            let candidates = Budget::round(self.budget.candidates, uniform);
+            let candidates = Budget::round(self.budget.candidates(), uniform);
             if candidates == 1 {
                 if let Some(proposal) = source.propose(uniform) {
                     let inverse_density = (F::ONE / proposal.density).weight_or_zero();

@@ -41,7 +41,7 @@ impl<const C: usize> VarianceModel<C> {
             }
             Objective::NormOfVariance => return norm_of_variance(&all, cost),
         };
-        let optimal = libm::sqrt(ratio * cost.sample / cost.candidate);
+        let optimal = libm::sqrt(ratio * cost.sample() / cost.candidate());
         // Free samples with a perfect target: 0 times infinity. Candidates cannot help.
         if optimal > 1.0 { optimal } else { 1.0 }
     }
@@ -63,9 +63,9 @@ impl Budget {
     /// ```
     /// use ris::{Budget, CostModel};
     /// let cost = CostModel::new(1.0, 10.0)?;
-    /// assert_eq!(Budget::within(10.0, cost, 100.0), Budget { candidates: 10.0, samples: 5.0 });
+    /// assert_eq!(Budget::within(10.0, cost, 100.0), Budget::new(10.0, 5.0));
     /// // Time for less than one sample of so many candidates: fewer candidates.
-    /// assert_eq!(Budget::within(1e9, cost, 100.0), Budget { candidates: 90.0, samples: 1.0 });
+    /// assert_eq!(Budget::within(1e9, cost, 100.0), Budget::new(90.0, 1.0));
     /// // Time for nothing: one of each.
     /// assert_eq!(Budget::within(10.0, cost, 0.5), Budget::ONE);
     /// # Ok::<(), ris::CostError>(())
@@ -73,9 +73,9 @@ impl Budget {
     pub fn within(candidates: f64, cost: CostModel, time: f64) -> Self {
         let at_least_one = |x: f64| if x > 1.0 { x } else { 1.0 };
         let m = at_least_one(candidates);
-        let n = at_least_one(time / (m * cost.candidate + cost.sample));
-        let m = if n > 1.0 { m } else { at_least_one((time / n - cost.sample) / cost.candidate).min(m) };
-        Self { candidates: m as f32, samples: n as f32 }
+        let n = at_least_one(time / (m * cost.candidate() + cost.sample()));
+        let m = if n > 1.0 { m } else { at_least_one((time / n - cost.sample()) / cost.candidate()).min(m) };
+        Self::new(m, n)
     }
 }
 
@@ -108,7 +108,7 @@ fn norm_of_variance<const C: usize>(all: &[Expectations; C], cost: CostModel) ->
         let m = libm::exp(log_m);
         // What remains is a variance; where an estimate of it is negative it is noise.
         let variance = |component: &Expectations| component.reducible() / m + component.remaining().max(0.0);
-        norm(all, variance) * (m * cost.candidate + cost.sample)
+        norm(all, variance) * (m * cost.candidate() + cost.sample())
     };
     let step = LARGEST / f64::from(STEPS);
     let best = (0..=STEPS)

@@ -40,7 +40,7 @@ use crate::{Budget, Float};
 ///     let x = (k as f64 + 0.5) / 1000.0;
 ///     model.add([x * x], x, 1.0);
 /// }
-/// let variance = model.predict(Budget { candidates: 2.0, samples: 1.0 })[0];
+/// let variance = model.predict(Budget::new(2.0, 1.0))[0];
 /// assert!((variance - ((0.2 - 0.125) / 2.0 + 0.125 - 1.0 / 9.0)).abs() < 1e-3);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -211,8 +211,8 @@ impl<const C: usize> VarianceModel<C> {
     /// Variance per component with this budget, whose counts are rounded at random as [`Ris`](crate::Ris) does; NaN with
     /// fewer than two candidates. Estimates of small variances may come out negative.
     pub fn predict(&self, budget: Budget) -> [f64; C] {
-        let m = Budget::mean_inverse(budget.candidates);
-        let n = Budget::mean_inverse(budget.samples);
+        let m = Budget::mean_inverse(budget.candidates());
+        let n = Budget::mean_inverse(budget.samples());
         match self.expectations() {
             Some(all) => all.map(|component| component.variance(m, n)),
             None => [f64::NAN; C],

@@ -166,7 +166,7 @@ fn estimators_with_strange_sources() {
             let source = from_fn(|u: &mut dyn FnMut() -> f32| (u(), density), |_: &f32| density);
             let target = |_: &f32| score;
             for candidates in [1.0, 1.5, 2.0, 5.0] {
-                let ris = Ris::new(Budget { candidates, samples: 2.0 });
+                let ris = Ris::new(Budget::new(candidates, 2.0));
                 let estimate: f32 = ris.estimate(&source, &target, &mut || 0.5, |_| 0.0);
                 assert_eq!(estimate, 0.0, "{density} {score} {candidates}");
             }
@@ -317,10 +317,10 @@ proptest! {
             number.accept(f64::from(p));
             prop_assert!((0.0..1.0).contains(&number.rest()));
         }
-        let budget = Budget { candidates: budget.0, samples: budget.1 };
-        let inverse = Budget::mean_inverse(budget.candidates);
+        let budget = Budget::new(budget.0.into(), budget.1.into());
+        let inverse = Budget::mean_inverse(budget.candidates());
         prop_assert!(inverse > 0.0 && inverse <= 1.0);
-        let count = Budget::round(budget.samples, &mut || u);
+        let count = Budget::round(budget.samples(), &mut || u);
         prop_assert!((1..=1 << 24).contains(&count));
     }
 }

@@ -37,7 +37,7 @@ fn importance_sampling() {
     for count in 1..=4_u32 {
         let problem = Problem::random(&mut random);
         let e = problem.expectations();
-        let sampling = ImportanceSampling { samples: count as f32 };
+        let sampling = ImportanceSampling { samples: count as f64 };
         let source = problem.source();
         let (mean, variance) =
             moments(&tuples(&problem, count), |u| sampling.estimate(&source, &mut || u(), |&x| problem.f[x]));
@@ -70,7 +70,7 @@ fn weighted_importance_sampling_is_biased_of_order_one_over_n() {
     let leading = -(product - integral * g - integral / g * (square - g * g)) / g;
     let mut scaled = Vec::new();
     for count in [1_u32, 2, 4, 8, 11] {
-        let weighted = WeightedImportanceSampling { samples: count as f32, target_integral };
+        let weighted = WeightedImportanceSampling { samples: count as f64, target_integral };
         let (mean, _) =
             moments(&tuples(&problem, count), |u| weighted.estimate(&source, &target, &mut || u(), |&x| problem.f[x]));
         scaled.push((mean - integral) * f64::from(count));

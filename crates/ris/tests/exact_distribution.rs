@@ -267,7 +267,7 @@ fn a_quasi_monte_carlo_sampler_is_all_it_takes() {
     let source = from_fn(|u: &mut dyn FnMut() -> f32| (u(), 1.0), |_: &f32| 1.0);
     let estimate = |seed, index| -> f32 {
         let mut sampler = OwenSobol::new(seed).sampler(0, index);
-        let ris = Ris::new(Budget { candidates: 4.5, samples: 1.0 });
+        let ris = Ris::new(Budget::new(4.5, 1.0));
         ris.estimate(&source, &|x: &f32| *x, &mut || sampler.next_1d(), |x| x * x)
     };
     let mean = |seed| (0..4096).map(|index| f64::from(estimate(seed, index))).sum::<f64>() / 4096.0;

@@ -73,7 +73,7 @@ fn a_target_that_fits_worse_than_the_source_makes_more_candidates_hurt() {
     let model = model(20_000, |u| u, |x| [x], |x| 1.0 + eps - x, |_| 1.0);
     assert_expectations(model.expectations().unwrap()[0], truth, 2e-3);
     assert!(model.more_candidates_hurt([1.0]));
-    let variance = |candidates| model.predict(Budget { candidates, samples: 1.0 })[0];
+    let variance = |candidates| model.predict(Budget::new(candidates, 1.0))[0];
     assert!(variance(1.0) < variance(2.0) && variance(2.0) < variance(8.0));
     // Where the target fits better they help.
     assert!(!self::model(1000, |u| u, |x| [x], |x| 0.1 + x, |_| 1.0).more_candidates_hurt([1.0]));
@@ -85,9 +85,9 @@ fn the_diffuse_sphere_falls_as_one_over_m() {
     let f = |cos: f64| cos / PI;
     let model = model(20_000, |u| u, |cos| [f(cos)], f, |_| 1.0 / (2.0 * PI));
     assert_expectations(model.expectations().unwrap()[0], Expectations { e1: 1.0, e2: 1.0, e3: 4.0 / 3.0 }, 2e-4);
-    for candidates in [1.0_f32, 2.0, 4.0, 20.0] {
-        let predicted = model.predict(Budget { candidates, samples: 1.0 })[0];
-        assert_close(predicted, 1.0 / (3.0 * f64::from(candidates)), 2e-4);
+    for candidates in [1.0_f64, 2.0, 4.0, 20.0] {
+        let predicted = model.predict(Budget::new(candidates, 1.0))[0];
+        assert_close(predicted, 1.0 / (3.0 * candidates), 2e-4);
     }
 }
 
@@ -118,13 +118,13 @@ fn the_estimator_has_the_variance_of_equation_2() {
         let e = problem.expectations();
         hurt += usize::from(e.reducible() < 0.0);
         for [candidates, samples] in budgets.iter().chain(&fractional).copied() {
-            let (mean, variance) = moments(&problem, Budget { candidates, samples });
+            let (mean, variance) = moments(&problem, Budget::new(candidates, samples));
             assert_close(mean, problem.integral(), 1e-9);
             let predicted = e.variance(Budget::mean_inverse(candidates), Budget::mean_inverse(samples));
             assert!((variance - predicted).abs() < 1e-7 * e.e3, "{variance} {predicted} {candidates} {samples}");
         }
         // Planted bug: fractional counts taken as they are.
-        let (_, variance) = moments(&problem, Budget { candidates: 1.5, samples: 1.0 });
+        let (_, variance) = moments(&problem, Budget::new(1.5, 1.0));
         assert!((variance - e.variance(1.0 / 1.5, 1.0)).abs() > 1e-4 * e.reducible().abs());
     }
     assert!((3..18).contains(&hurt), "both signs of e3 - e2 are wanted: {hurt} of 20");
@@ -151,7 +151,7 @@ fn probability_that_is_left_counts_as_candidates_of_weight_zero() {
             let share = if weight(y) > 0.0 { weight(y) / (weight(x) + weight(y)) } else { 0.0 };
             for (w, r) in [(0.5 * share, share), (0.5 * (1.0 + share), 1.0 - share)] {
                 let mut numbers = [u, 0.5, v, w].into_iter();
-                let ris = Ris::new(Budget { candidates: 2.0, samples: 1.0 });
+                let ris = Ris::new(Budget::new(2.0, 1.0));
                 let estimate = ris.estimate(&source, &target, &mut || numbers.next().unwrap(), |&x| problem.f[x]);
                 mean += p * q * r * estimate;
             }

@@ -21,12 +21,12 @@ fn model<const C: usize>(d: [f64; C], t: f64) -> VarianceModel<C> {
 
 /// Variance within a time, for real counts: equation 2 at `N = T / (M T_X + T_Y)`.
 fn variance(e: &Expectations, cost: CostModel, time: f64, candidates: f64) -> f64 {
-    e.variance(1.0 / candidates, (candidates * cost.candidate + cost.sample) / time)
+    e.variance(1.0 / candidates, (candidates * cost.candidate() + cost.sample()) / time)
 }
 
 /// The best `M >= 1` with `N >= 1` of a fine scan.
 fn scan(cost: CostModel, time: f64, objective: impl Fn(f64) -> f64) -> f64 {
-    let largest = ((time - cost.sample) / cost.candidate).max(1.0);
+    let largest = ((time - cost.sample()) / cost.candidate()).max(1.0);
     let candidates = |k: u32| largest.powf(f64::from(k) / 20_000.0);
     (0..=20_000).map(candidates).min_by(|a, b| objective(*a).total_cmp(&objective(*b))).unwrap()
 }
@@ -46,9 +46,9 @@ fn weighted_is_the_brute_force_optimum() {
                 };
                 let best = objective(scan(cost, time, objective));
                 let budget = model.optimal(cost, time, Objective::Weighted(factors));
-                assert!(budget.candidates >= 1.0 && budget.samples >= 1.0);
+                assert!(budget.candidates() >= 1.0 && budget.samples() >= 1.0);
                 assert!(budget.cost(cost) <= time * (1.0 + 1e-6), "{budget:?}");
-                let chosen = objective(f64::from(budget.candidates));
+                let chosen = objective(budget.candidates());
                 assert!(chosen <= best + 1e-6 * best.abs(), "{budget:?}: {chosen} against {best}");
             }
         }
@@ -94,17 +94,17 @@ fn the_special_cases_of_the_paper() {
     }
     for objective in [Objective::NormOfParts, Objective::Weighted([1.0])] {
         assert_eq!(perfect.optimal_candidates(cost, objective), f64::INFINITY);
-        assert_eq!(perfect.optimal(cost, 100.0, objective), Budget { candidates: 35.0, samples: 1.0 });
+        assert_eq!(perfect.optimal(cost, 100.0, objective), Budget::new(35.0, 1.0));
     }
     let numerical = perfect.optimal(cost, 100.0, Objective::NormOfVariance);
-    assert_eq!(numerical, Budget { candidates: 35.0, samples: 1.0 });
+    assert_eq!(numerical, Budget::new(35.0, 1.0));
 
     // e3 < e2: more candidates hurt.
     let hurt = model([0.5], -0.5);
     assert!(hurt.more_candidates_hurt([1.0]) && hurt.expectations().unwrap()[0].reducible() < 0.0);
     for objective in [Objective::NormOfParts, Objective::Weighted([1.0]), Objective::NormOfVariance] {
         assert_eq!(hurt.optimal_candidates(cost, objective), 1.0, "{objective:?}");
-        assert_eq!(hurt.optimal(cost, 320.0, objective), Budget { candidates: 1.0, samples: 10.0 });
+        assert_eq!(hurt.optimal(cost, 320.0, objective), Budget::new(1.0, 10.0));
     }
 
     // T < T_X + T_Y: one of each; a little more: one sample.
@@ -113,7 +113,7 @@ fn the_special_cases_of_the_paper() {
         assert_eq!(usual.optimal(cost, time, Objective::NormOfParts), Budget::ONE, "{time}");
     }
     let one = usual.optimal(cost, 34.0, Objective::NormOfParts);
-    assert_eq!((one.candidates, one.samples), (2.0, 1.0));
+    assert_eq!((one.candidates(), one.samples()), (2.0, 1.0));
 
     // Without candidates, without costs: importance sampling.
     assert_eq!(VarianceModel::<1>::new().optimal_candidates(cost, Objective::NormOfParts), 1.0);
@@ -129,7 +129,7 @@ fn the_robust_bound_fails_where_more_candidates_hurt() {
     let e = model([0.9], -0.9).expectations().unwrap()[0];
     assert!(e.reducible() < 0.0);
     let cost = CostModel::new(1.0, 30.0).unwrap();
-    let robust = f64::from(cost.robust().candidates);
+    let robust = cost.robust().candidates();
     let best = variance(&e, cost, 1e6, scan(cost, 1e6, |m| variance(&e, cost, 1e6, m)));
     assert!(variance(&e, cost, 1e6, robust) > 5.0 * best);
 }
@@ -144,10 +144,10 @@ proptest! {
         more in 0.0..4.0_f64,
     ) {
         let cost = CostModel::new(1.0, 10_f64.powf(ratio)).unwrap();
-        let time = (cost.candidate + cost.sample) * 10_f64.powf(more);
+        let time = (cost.candidate() + cost.sample()) * 10_f64.powf(more);
         let e = Expectations { e1: 1.0, e2: 1.0 + remaining, e3: 1.0 + remaining + reducible };
-        let of = |b: Budget| e.variance(1.0 / f64::from(b.candidates), 1.0 / f64::from(b.samples));
-        let robust = of(Budget::within(f64::from(cost.robust().candidates), cost, time));
+        let of = |b: Budget| e.variance(1.0 / b.candidates(), 1.0 / b.samples());
+        let robust = of(Budget::within(cost.robust().candidates(), cost, time));
         let best = of(Budget::within(scan(cost, time, |m| of(Budget::within(m, cost, time))), cost, time));
         prop_assert!(robust <= 2.0 * best * (1.0 + 1e-5), "{} {}", robust, best);
     }
@@ -156,7 +156,7 @@ proptest! {
     fn budgets_stay_within_their_time(m in 0.0..1e9_f64, candidate in 1e-3..1e3_f64, sample in 0.0..1e3_f64, time in 0.0..1e9_f64) {
         let cost = CostModel::new(candidate, sample).unwrap();
         let budget = Budget::within(m, cost, time);
-        prop_assert!(budget.candidates >= 1.0 && budget.samples >= 1.0);
+        prop_assert!(budget.candidates() >= 1.0 && budget.samples() >= 1.0);
         // In f32.
         prop_assert!(budget.cost(cost) <= time.max(candidate + sample) * (1.0 + 1e-6));
     }
@@ -185,7 +185,7 @@ fn costs_are_measured_and_checked() {
     assert_eq!(CostModel::measure(8, || 1.0, || 1, || 1), Err(CostError::Candidate(0.0)));
     // Talbot, Cline and Egbert 2005, figure 4.
     let paper = CostModel::new(1.0, 15.75).unwrap();
-    assert_eq!(paper.robust().candidates, 15.75);
+    assert_eq!(paper.robust().candidates(), 15.75);
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub fn resampled(scene: &Scene, x: &Hit<'_>, mut u: &mut Numbers<'_>) -> V {
     let (lamp, area) = (scene.lamp(), scene.lamp().point(0.0, 0.0).2);
     let source = from_fn(|u: &mut dyn FnMut() -> f64| (lamp.point(u(), u()).0, 1.0 / area), |_: &V| 1.0 / area);
     let target = |y: &V| scene.unshadowed(x, *y).0.mean();
-    Ris::new(Budget { candidates: 8.0, samples: 1.0 }).estimate(&source, &target, &mut u, |y| {
+    Ris::new(Budget::new(8.0, 1.0)).estimate(&source, &target, &mut u, |y| {
         if scene.sees(x, *y) { scene.unshadowed(x, *y).0 } else { V::default() }
     })
 }

@@ -206,7 +206,7 @@ impl<C: EmitterChoice + Sync> RestirDirect<'_, C> {
         let Some(vertex) = &eye.vertex else { return Resampled::EMPTY };
         let source = LightSource { mix: self.direct.mix.without_scattering(), ..self.direct.source(scene, vertex) };
         let target = self.direct.target(scene, vertex);
-        let count = Budget::round(self.direct.budget.candidates, &mut || numbers.next_1d());
+        let count = Budget::round(self.direct.budget.candidates(), &mut || numbers.next_1d());
         let picked = Reservoir::draw(count, &source, &target, &mut || numbers.next_1d());
         let seen = if self.tests_visibility { picked.kept_if(|y| y.is_visible(scene, vertex)) } else { picked };
         reusable(seen, scene, vertex)

@@ -122,7 +122,7 @@ impl ResampledScattering {
     fn resample<V: Vertex>(&self, vertex: &V, sampler: &mut impl Sampler) -> Option<ScatterSample<V::Spectrum>> {
         let frame = Frame::from_z(vertex.shading_normal());
         let wo = frame.to_local(vertex.wo());
-        let count = Budget::round(self.candidates, &mut || sampler.next_1d());
+        let count = Budget::round(self.candidates.into(), &mut || sampler.next_1d());
         let mut reservoir = Reservoir::new();
         for _ in 0..count {
             let (lobe, [u, v], select) = (sampler.next_1d(), sampler.next_2d(), sampler.next_1d());

@@ -20,7 +20,7 @@ use crate::{Budget, Float, Source, Uniform};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImportanceSampling {
     /// `N`.
-    pub samples: f32,
+    pub samples: f64,
 }
 
 impl ImportanceSampling {

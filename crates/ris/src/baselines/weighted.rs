@@ -31,7 +31,7 @@ use crate::{Budget, Float, Source, Target, Uniform};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedImportanceSampling<F = f32> {
     /// `N`, real, rounded at random.
-    pub samples: f32,
+    pub samples: f64,
     /// The integral of the target.
     pub target_integral: F,
 }

@@ -7,14 +7,14 @@ use ris::{AliasTable, Batch, Budget, Float, PrefixSums, Reservoir, Ris, Source, 
 
 use crate::{Rising, SUITE, Score, TARGETS, TRUTH, f, falling, moments, proposal, uniform};
 
-const BUDGETS: [[f32; 2]; 6] = [[1.0, 1.0], [1.3, 1.0], [4.0, 1.0], [2.5, 1.5], [7.9, 3.2], [16.0, 2.0]];
+const BUDGETS: [[f64; 2]; 6] = [[1.0, 1.0], [1.3, 1.0], [4.0, 1.0], [2.5, 1.5], [7.9, 3.2], [16.0, 2.0]];
 
 fn unbiased(name: &str, source: &impl Source<f64, f64>) {
     for (target_name, target) in TARGETS {
         for [candidates, samples] in BUDGETS {
             let check = SUITE.check(&format!("{name}, {target_name}, M = {candidates}, N = {samples}"));
             let mut uniforms = check.uniforms();
-            let ris = Ris::new(Budget { candidates, samples });
+            let ris = Ris::new(Budget::new(candidates, samples));
             let estimates = moments(&mut uniforms, 20_000, |u| ris.estimate(source, &target, &mut || u.next_f64(), f));
             mean_is(check, &estimates, TRUTH).expect_pass();
         }
@@ -75,7 +75,7 @@ fn single_precision_is_unbiased() {
         let check = SUITE.check(&format!("f32, M = {candidates}, N = {samples}"));
         let mut uniforms = check.uniforms();
         let source = from_fn(|u: &mut dyn FnMut() -> f32| (u(), 1.0), |_: &f32| 1.0);
-        let ris = Ris::new(Budget { candidates, samples });
+        let ris = Ris::new(Budget::new(candidates, samples));
         let estimates = moments(&mut uniforms, 20_000, |u| {
             ris.estimate(&source, &|x: &f32| x + 0.1, &mut || u.next_f32(), |x| x * x * x + 0.2).to_f64()
         });
@@ -86,7 +86,7 @@ fn single_precision_is_unbiased() {
 #[test]
 fn quasi_monte_carlo_is_unbiased_over_its_randomisations() {
     let estimate = |seed: u64| -> f64 {
-        let ris = Ris::new(Budget { candidates: 4.5, samples: 1.0 });
+        let ris = Ris::new(Budget::new(4.5, 1.0));
         let one = |index| {
             let mut sampler = OwenSobol::new(seed).sampler(0, index);
             ris.estimate(&uniform(), &TARGETS[0].1, &mut || f64::from(sampler.next_1d()), f)

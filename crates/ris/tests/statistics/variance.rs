@@ -28,7 +28,7 @@ fn predicted_variance_is_measured_variance() {
         for [candidates, samples] in [[1.5, 1.0], [4.0, 1.0], [2.5, 1.5], [10.0, 3.0]] {
             let check = SUITE.check(&format!("variance with {name}, M = {candidates}, N = {samples}"));
             let mut uniforms = check.uniforms();
-            let budget = Budget { candidates, samples };
+            let budget = Budget::new(candidates, samples);
             let ris = Ris::new(budget);
             let measured = measured(&mut uniforms, |u| ris.estimate(&Rising, &target, &mut || u.next_f64(), f));
             // Independent models of few candidates each: their predictions are unbiased, too.
@@ -43,7 +43,7 @@ fn predicted_variance_is_measured_variance() {
 
 #[test]
 fn rounded_counts_have_their_own_variance() {
-    let (target, budget) = (TARGETS[0].1, Budget { candidates: 1.5, samples: 1.5 });
+    let (target, budget) = (TARGETS[0].1, Budget::new(1.5, 1.5));
     let check = SUITE.check("variance of rounded counts");
     let mut uniforms = check.uniforms();
     let ris = Ris::new(budget);
@@ -81,7 +81,7 @@ fn the_diffuse_sphere_has_variance_one_over_three_m() {
     let hemisphere = from_fn(|u: &mut dyn FnMut() -> f64| (u(), 0.5 / PI), |_: &f64| 0.5 / PI);
     let lambert = |cos: &f64| cos / PI;
     let measure = |uniforms: &mut Uniforms, candidates| {
-        let ris = Ris::new(Budget { candidates, samples: 1.0 });
+        let ris = Ris::new(Budget::new(candidates, 1.0));
         measured(uniforms, |u| ris.estimate(&hemisphere, &lambert, &mut || u.next_f64(), lambert))
     };
     let check = SUITE.check("diffuse sphere, slope over M");
@@ -89,7 +89,7 @@ fn the_diffuse_sphere_has_variance_one_over_three_m() {
     let points: Vec<(f64, f64)> = (0..7)
         .map(|k| {
             let candidates = 1 << k;
-            let variances = measure(&mut uniforms, candidates as f32);
+            let variances = measure(&mut uniforms, candidates as f64);
             (f64::from(candidates), variances.iter().sum::<f64>() / variances.len() as f64)
         })
         .collect();

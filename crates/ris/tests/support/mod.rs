@@ -83,13 +83,13 @@ impl Problem {
 
     /// Every sequence of numbers that [`ris::Ris`] can meet, but for those that decide the same, with its probability.
     pub fn for_each_sequence(&self, budget: Budget, visit: &mut dyn FnMut(&[f64], f64)) {
-        for (samples, first) in roundings(budget.samples) {
+        for (samples, first) in roundings(budget.samples()) {
             // All combinations of the samples' numbers of candidates.
             let mut all = vec![first];
             for _ in 0..samples {
                 let mut longer = Vec::new();
                 for steps in &all {
-                    for (candidates, rounding) in roundings(budget.candidates) {
+                    for (candidates, rounding) in roundings(budget.candidates()) {
                         let mut steps = steps.clone();
                         steps.extend(rounding);
                         steps.push(Step::NewSample);
@@ -138,8 +138,8 @@ pub fn invert(p: &[f64], u: f64) -> usize {
 }
 
 /// The counts that a real number is rounded to, each with the step that makes it so.
-fn roundings(count: f32) -> Vec<(usize, Vec<Step>)> {
-    let (floor, part) = (count.floor(), f64::from(count.fract()));
+fn roundings(count: f64) -> Vec<(usize, Vec<Step>)> {
+    let (floor, part) = (count.floor(), count.fract());
     if part == 0.0 {
         return vec![(floor as usize, vec![])];
     }

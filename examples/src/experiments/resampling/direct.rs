@@ -85,7 +85,7 @@ fn candidates<'a>(
     let samplers = Independent::new(context.seed_of("cost", 0));
     let direct: ResampledDirect<'a, _> = resampling.resampled(&setup.scene, &samplers, None)?;
     let cost = measure_cost(&setup.scene, &samplers, &direct)?;
-    let time = SAMPLES * (cost.candidate + cost.sample);
+    let time = SAMPLES * (cost.candidate() + cost.sample());
     let papers_cost = CostModel::new(1.0, PAPERS_RATIO)?;
     let candidate = |label, budget, technique| Candidate {
         label,
@@ -98,8 +98,8 @@ fn candidates<'a>(
     let resampled =
         |label, budget| candidate(label, budget, Technique::Resampled(ResampledDirect { budget, ..direct.clone() }));
     let mut all = vec![
-        resampled("importance-sampling", Budget { candidates: 1.0, samples: SAMPLES as f32 }),
-        resampled("robust", Budget::within(f64::from(cost.robust().candidates), cost, time)),
+        resampled("importance-sampling", Budget::new(1.0, SAMPLES)),
+        resampled("robust", Budget::within(cost.robust().candidates(), cost, time)),
     ];
     if proposals == "paper" {
         // What the robust choice would be if visibility cost what it did then.
@@ -111,7 +111,7 @@ fn candidates<'a>(
     if proposals == "strong" {
         let next_event = NextEvent { heuristic: Power::TWO, choice: PowerChoice::new(setup.scene.emitters()) };
         let times = SAMPLES as u32 / 2;
-        let budget = Budget { candidates: 1.0, samples: times as f32 };
+        let budget = Budget::new(1.0, times.into());
         all.push(candidate("next-event", budget, Technique::NextEvent(next_event, times)));
     }
     Ok(all)
@@ -200,8 +200,8 @@ fn report_on(setup: &Setup, proposals: &str, all: &[Candidate<'_>], report: &mut
         let params = [
             ("proposals", Value::from(proposals)),
             ("choice", candidate.label.into()),
-            ("M", f64::from(candidate.budget.candidates).into()),
-            ("N", f64::from(candidate.budget.samples).into()),
+            ("M", candidate.budget.candidates().into()),
+            ("N", candidate.budget.samples().into()),
             ("variance times seconds", candidate.cost.mean().into()),
         ];
         let (variance, seconds) = (candidate.variance.mean(), candidate.seconds.mean());
@@ -249,8 +249,7 @@ fn pictures(
     resampling: &ResamplingSettings,
 ) -> Result<(), Failure> {
     for candidate in &all[..2] {
-        let Budget { candidates, samples } = candidate.budget;
-        let settings = direct_light(setup, with_budget(resampling, candidates, samples));
+        let settings = direct_light(setup, with_budget(resampling, candidate.budget));
         let rendering = setup.render(&settings, context.effort(1, 20), context.seed_of("picture", 0))?;
         let name = format!("figure-4-{}-{}", setup.scene.name(), candidate.label);
         context.save_picture(&name, &rendering.film.develop(0), 0.0)?;

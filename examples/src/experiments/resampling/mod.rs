@@ -60,7 +60,8 @@ fn direct_light(setup: &Setup, resampling: ResamplingSettings) -> RenderSettings
     }
 }
 
-fn with_budget(resampling: &ResamplingSettings, candidates: f32, samples: f32) -> ResamplingSettings {
+fn with_budget(resampling: &ResamplingSettings, budget: Budget) -> ResamplingSettings {
+    let (candidates, samples) = (budget.candidates() as f32, budget.samples() as f32);
     ResamplingSettings { candidates: Candidates::Count(candidates), samples, ..resampling.clone() }
 }
 

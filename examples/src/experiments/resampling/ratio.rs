@@ -14,8 +14,8 @@ use crate::program::Failure;
 use crate::resampling::ResamplingSettings;
 
 /// The two settings of the figure, of equal time in the paper.
-const FEW: Budget = Budget { candidates: 1.0, samples: 20.0 };
-const MANY: Budget = Budget { candidates: 60.0, samples: 1.0 };
+const FEW: Budget = Budget::new(1.0, 20.0);
+const MANY: Budget = Budget::new(60.0, 1.0);
 /// Neighbours whose candidates a pixel's model takes in.
 const POOL: usize = 1;
 
@@ -47,12 +47,12 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
             pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.push(value));
         }
         let seconds = start.elapsed().as_secs_f64() / trials as f64;
-        let settings = direct_light(&setup, with_budget(&resampling, budget.candidates, budget.samples));
+        let settings = direct_light(&setup, with_budget(&resampling, budget));
         let rendering = setup.render(&settings, 1, context.seed_of("picture", 0))?;
         context.save_picture(&format!("figure-3-{name}"), &rendering.film.develop(0), 0.0)?;
         let params = [
-            ("M", Value::from(f64::from(budget.candidates))),
-            ("N", f64::from(budget.samples).into()),
+            ("M", Value::from(budget.candidates())),
+            ("N", budget.samples().into()),
             ("predicted variance", (predicted(&map, budget).iter().sum::<f64>() / optimal.len() as f64).into()),
         ];
         let variances: Vec<f64> = pixels.iter().map(Replications::variance).collect();
@@ -75,7 +75,7 @@ fn agreement(budget: Budget, measured: &[f64], predicted: &[f64], width: usize) 
         ratios.push(sum(measured) / sum(predicted));
     }
     let ratio = Ratio { value: ratios.mean(), ci95: ratios.confidence_interval(0.95) };
-    equals(format!("figure-3-m{}-measured-over-predicted-variance", budget.candidates), ratio, 1.0, 0.05)
+    equals(format!("figure-3-m{}-measured-over-predicted-variance", budget.candidates()), ratio, 1.0, 0.05)
 }
 
 /// Among the pixels where one of the two settings is clearly better: does the map say which? The two have the same variance where
@@ -86,12 +86,12 @@ fn agreement(budget: Budget, measured: &[f64], predicted: &[f64], width: usize) 
 /// and the map's M is `sqrt(a/b T_Y/T_X)`.
 fn compare(optimal: &[f64], cost: CostModel, few: &[f64], many: &[f64], report: &mut Report) {
     let inverse = |budget: Budget| {
-        let (m, n) = (f64::from(budget.candidates), f64::from(budget.samples));
+        let (m, n) = (budget.candidates(), budget.samples());
         (1.0 / (m * n), 1.0 / n)
     };
     let ((few_product, few_samples), (many_product, many_samples)) = (inverse(FEW), inverse(MANY));
     let balance = (many_samples - few_samples) / (few_product - many_product);
-    let middle = (balance * cost.sample / cost.candidate).sqrt();
+    let middle = (balance * cost.sample() / cost.candidate()).sqrt();
     for (name, better, worse, prefers_many) in [("n20", few, many, false), ("m60", many, few, true)] {
         let clear: Vec<usize> = (0..optimal.len()).filter(|&pixel| worse[pixel] > 1.5 * better[pixel]).collect();
         let right = clear.iter().filter(|&&pixel| (optimal[pixel] > middle) == prefers_many).count() as f64;
@@ -109,7 +109,7 @@ fn compare(optimal: &[f64], cost: CostModel, few: &[f64], many: &[f64], report: 
 /// Green where candidates pay, red where samples do, on the scale of the logarithm of M from 1 to 3600.
 fn picture(optimal: &[f64], [width, height]: [u32; 2]) -> Result<LayeredImage, Failure> {
     let colour = |m: &f64| {
-        let share = (m.ln() / (f64::from(MANY.candidates).powi(2)).ln()).clamp(0.0, 1.0) as f32;
+        let share = (m.ln() / MANY.candidates().powi(2).ln()).clamp(0.0, 1.0) as f32;
         [1.0 - share, share, 0.05]
     };
     let mut image = LayeredImage::new(width, height)?;

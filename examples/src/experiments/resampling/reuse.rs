@@ -1,6 +1,7 @@
 //! Reuse between pixels against resampling alone, in equal time.
 
 use qmc_sampling::Replications;
+use ris::Budget;
 use scene_core::film::Filter;
 use serde_json::Value;
 
@@ -108,7 +109,7 @@ fn candidate(
         reuse_radius: RADIUS,
         reuse_unshadowed: unshadowed,
         direct: DirectName::Ris,
-        ..with_budget(proposals, candidates, 1.0)
+        ..with_budget(proposals, Budget::new(candidates.into(), 1.0))
     };
     let mut settings = direct_light(setup, resampling);
     if rounds > 0 {
