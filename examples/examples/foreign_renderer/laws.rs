@@ -1,8 +1,10 @@
 //! The laws of the crates' traits, asked of the renderer's own types: one call for each trait, and one for all of `scene-core`.
 
 use estimator_checks::laws::path_space::{check_contribution, check_similarity};
+use estimator_checks::laws::paths::check_path_heuristic;
 use estimator_checks::laws::photons::{check_deposition, check_flux, check_positive};
 use estimator_checks::laws::ranges::check_index;
+use estimator_checks::laws::resampling::check_target;
 use estimator_checks::laws::sampler::check_sampler;
 use estimator_checks::laws::scene::{RendererLaws, SensorLaws, check_emitter_choice};
 use estimator_checks::{Check, Hemisphere, Outcome, Report, Sampled, SamplingCheck, Square, SuiteError};
@@ -11,9 +13,10 @@ use mis_heuristics::Heuristic;
 use path_space_filter::{NormalCone, PathVertex};
 use qmc_sampling::OwenSobol;
 use range_search::{BuildError, HashGrid};
+use vpl_gi::Classical;
 
 use crate::glue::{Seen, ThreeHalves};
-use crate::renderer::{Bsdf, Scene};
+use crate::renderer::{Bsdf, Hit, Scene};
 use crate::traits::OneLamp;
 use crate::vector::V;
 
@@ -32,6 +35,7 @@ pub fn laws(scene: &Scene, vertices: &[Seen<'_>]) -> Result<bool, Box<dyn std::e
     let weights = check_resampling_weights("weights", |i, d: &[f64]| ThreeHalves.weight(i, &d));
     show("ris", "own heuristic as resampling weights", weights.into());
     show("ris", "points of the lamp", lamp(scene)?);
+    show("ris", "own target: unshadowed light of the lamp", target(scene, vertices).into());
     for (name, object) in [("diffuse", &scene.objects[6]), ("glossy", &scene.objects[7])] {
         show("estimator-checks", &format!("own {name} BSDF"), bsdf(name, object.bsdf)?);
     }
@@ -47,6 +51,8 @@ pub fn laws(scene: &Scene, vertices: &[Seen<'_>]) -> Result<bool, Box<dyn std::e
     let emitters = scene_core::Scene::emitters(scene);
     let choice = check_emitter_choice(Check::new("choice", LEVEL)?, &OneLamp, None, emitters);
     show("scene-core", "own choice of the lamp", choice);
+    let paths = check_path_heuristic("paths", &Classical(ThreeHalves));
+    show("vpl-gi", "own heuristic of whole paths", paths.into());
 
     let colours = [V(1.0, 0.5, 0.0), V(3.0, 2.0, 1e-3), V::splat(f64::INFINITY)];
     let flux = check_flux(&colours, |c| [c.0, c.1, c.2], 1e-12);
@@ -80,6 +86,16 @@ fn lamp(scene: &Scene) -> Result<Report, SuiteError> {
         Some(([q.dot(x) / x.dot(x), q.dot(y) / y.dot(y)], 1.0))
     };
     Ok(check_source(Check::new("lamp", LEVEL)?, Square, propose, |_| 1.0))
+}
+
+/// Light that the lamp's points send to the vertices, shadows left out, is a target for light with shadows.
+fn target(scene: &Scene, vertices: &[Seen<'_>]) -> Outcome {
+    let lamp = scene.lamp();
+    let grid = (0..16).map(|k| [f64::from(k % 4) / 4.0 + 0.1, f64::from(k / 4) / 4.0 + 0.1]);
+    let points: Vec<V> = grid.map(|[u, v]| lamp.point(u, v).0).collect();
+    let samples: Vec<_> = vertices.iter().take(200).flat_map(|x| points.iter().map(move |y| (&x.0, *y))).collect();
+    let unshadowed = |(x, y): &(&Hit<'_>, V)| scene.unshadowed(x, *y).0.mean();
+    check_target("target", &samples, unshadowed, |(x, y)| if scene.sees(x, *y) { unshadowed(&(*x, *y)) } else { 0.0 })
 }
 
 /// A scattering function in `f64`, called directly.
