@@ -30,6 +30,8 @@ use crate::{Balance, Densities, Float, Heuristic};
 /// assert_eq!(weights, [Ok(0.0), Ok(0.25), Ok(0.75)]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "f64", into = "f64"))]
 pub struct Cutoff {
     alpha: f64,
 }
@@ -68,6 +70,19 @@ impl Cutoff {
     #[must_use]
     pub fn alpha(&self) -> f64 {
         self.alpha
+    }
+}
+
+impl TryFrom<f64> for Cutoff {
+    type Error = CutoffError;
+    fn try_from(alpha: f64) -> Result<Self, CutoffError> {
+        Self::new(alpha)
+    }
+}
+
+impl From<Cutoff> for f64 {
+    fn from(cutoff: Cutoff) -> Self {
+        cutoff.alpha()
     }
 }
 

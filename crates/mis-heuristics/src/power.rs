@@ -41,6 +41,8 @@ use crate::{Balance, Densities, Float, Heuristic, Maximum};
 /// # Ok::<(), mis_heuristics::PowerError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "f64", into = "f64"))]
 pub struct Power {
     exponent: Exponent,
 }
@@ -115,6 +117,19 @@ impl Power {
             Exponent::Any(beta) => beta,
             Exponent::Infinite => f64::INFINITY,
         }
+    }
+}
+
+impl TryFrom<f64> for Power {
+    type Error = PowerError;
+    fn try_from(beta: f64) -> Result<Self, PowerError> {
+        Self::new(beta)
+    }
+}
+
+impl From<Power> for f64 {
+    fn from(power: Power) -> Self {
+        power.beta()
     }
 }
 

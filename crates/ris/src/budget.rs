@@ -17,9 +17,27 @@ use crate::{Float, Uniform};
 /// assert_eq!(Budget::round(budget.candidates(), &mut || 0.8), 15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "Numbers"))]
 pub struct Budget {
     candidates: f64,
     samples: f64,
+}
+
+/// As they are in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Numbers {
+    candidates: f64,
+    samples: f64,
+}
+
+#[cfg(feature = "serde")]
+impl From<Numbers> for Budget {
+    fn from(Numbers { candidates, samples }: Numbers) -> Self {
+        Self::new(candidates, samples)
+    }
 }
 
 impl Budget {

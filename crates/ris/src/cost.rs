@@ -20,9 +20,28 @@ use alloc::vec::Vec;
 /// # Ok::<(), ris::CostError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Costs"))]
 pub struct CostModel {
     candidate: f64,
     sample: f64,
+}
+
+/// As they are in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Costs {
+    candidate: f64,
+    sample: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Costs> for CostModel {
+    type Error = CostError;
+    fn try_from(Costs { candidate, sample }: Costs) -> Result<Self, CostError> {
+        Self::new(candidate, sample)
+    }
 }
 
 /// Why costs make no sense.

@@ -35,7 +35,8 @@
 //! All densities and targets are in one measure that the caller chooses.
 //!
 //! # Features
-//! `std` adds a clock, [`seconds`](CostModel::measure). Without it: `no_std` with `alloc`. The only dependency is `libm`, for
+//! `std` adds a clock, [`seconds`](CostModel::measure). Without it: `no_std` with `alloc`. `serde` reads and writes [`Budget`] and
+//! [`CostModel`], checked on the way in. The only other dependency is `libm`, for
 //! square roots. `f32` and `f64` by the sealed trait [`Float`].
 #![cfg_attr(not(feature = "std"), no_std)]
 #![forbid(unsafe_code)]

@@ -23,6 +23,7 @@ use mis_heuristics::{GeometryPartition, PartitionError};
 /// # Ok::<(), mis_heuristics::PartitionError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Threshold {
     /// In 1/length^2, in the scene's unit of length.
     Absolute(f32),
@@ -68,6 +69,8 @@ impl Threshold {
 /// **Source.** Kollig and Keller 2004, section 2 and figure 2, where the four are a) soft without the scattered ray, b) balance, c) distance, d) hard;
 /// soft: Kollig and Keller, "Illumination in the Presence of Weak Singularities", 2006.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Named", into = "Named"))]
 pub struct Partition {
     form: Form,
     threshold: f32,
@@ -78,6 +81,42 @@ enum Form {
     Geometry(GeometryPartition<f32>),
     Balance,
     Distance,
+}
+
+/// As it is in a file: the name of the constructor, and its threshold.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Named {
+    Hard(f32),
+    Soft(f32),
+    Balance(f32),
+    Distance(f32),
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Named> for Partition {
+    type Error = PartitionError;
+    fn try_from(named: Named) -> Result<Self, PartitionError> {
+        match named {
+            Named::Hard(threshold) => Self::hard(threshold),
+            Named::Soft(threshold) => Self::soft(threshold),
+            Named::Balance(threshold) => Self::balance(threshold),
+            Named::Distance(threshold) => Self::distance(threshold),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Partition> for Named {
+    fn from(partition: Partition) -> Self {
+        match partition.form {
+            Form::Geometry(geometry) if geometry.is_soft() => Self::Soft(partition.threshold),
+            Form::Geometry(_) => Self::Hard(partition.threshold),
+            Form::Balance => Self::Balance(partition.threshold),
+            Form::Distance => Self::Distance(partition.threshold),
+        }
+    }
 }
 
 impl Partition {
