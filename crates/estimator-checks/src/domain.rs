@@ -64,6 +64,8 @@ impl IntoPoint<f64> for f32 {
 ///   1e-4 or less are moved back.
 ///
 /// One-dimensional domains ignore `v`.
+///
+/// Not dyn compatible: the number of dimensions is a constant.
 pub trait Domain {
     /// A point.
     type Point: Coordinates;

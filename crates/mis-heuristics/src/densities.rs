@@ -54,6 +54,9 @@ pub trait Densities<F> {
     }
 }
 
+// Its docs say so.
+const _: Option<&dyn Densities<f64>> = None;
+
 impl<F: Copy> Densities<F> for [F] {
     #[inline]
     fn len(&self) -> usize {

@@ -42,6 +42,8 @@ use crate::{Densities, Float};
 /// }
 /// assert_eq!(Equal.weight(2, &[0.0, 3.0, 4.0]), 0.5);
 /// ```
+///
+/// Not dyn compatible, because `weight` is generic: to choose at run time, implement it for an enum of the choices.
 pub trait Heuristic<F> {
     /// The weight of `technique` for the sample that `densities` describe.
     ///

@@ -28,6 +28,8 @@
 /// Spectrum([4.0; 8]).add(1.0, &mut sum);
 /// assert_eq!(Spectrum::mean(&sum, 1.5).0, [3.0; 8]);
 /// ```
+///
+/// Not dyn compatible: it is a number.
 pub trait Contribution: Copy {
     /// Weighted sums of contributions.
     type Sum: Clone + Send + Sync;

@@ -6,10 +6,15 @@
 /// With weights `w_j` the variance of an average of independent contributions of equal variance is `sum w^2 / (sum w)^2` times theirs, at least `1 / K`.
 ///
 /// **Laws.** The weight is finite, not negative, and 1 in the centre.
+///
+/// Dyn compatible: `&dyn Kernel`.
 pub trait Kernel {
     /// The weight at a squared distance, over the squared radius: in `[0, 1]`, up to round-off.
     fn weight(&self, t_squared: f32) -> f32;
 }
+
+// Its docs say so.
+const _: Option<&dyn Kernel> = None;
 
 /// The characteristic function of the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

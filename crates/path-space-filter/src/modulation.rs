@@ -6,12 +6,17 @@ use crate::{Contribution, PathVertex};
 /// What of a contribution is averaged, and what becomes of the average at the vertex that asks.
 ///
 /// **Law.** `remodulate(v, demodulate(v))` is `v.contribution()`, up to round-off.
+///
+/// Dyn compatible: `&dyn Modulation<V>`.
 pub trait Modulation<V: PathVertex> {
     /// What is averaged.
     fn demodulate(&self, vertex: &V) -> V::Contribution;
     /// What an average is worth at a vertex.
     fn remodulate(&self, vertex: &V, mean: V::Contribution) -> V::Contribution;
 }
+
+// Its docs say so.
+const _: Option<&dyn Modulation<crate::Vertex<f32>>> = None;
 
 /// Contributions as they are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

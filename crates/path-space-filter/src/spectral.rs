@@ -23,6 +23,8 @@
 ///     fn contribution(&self) -> [f32; 3] { CieXyz.project(self.wavelength, self.radiance, 1.0 / 400.0) } // drawn from 380 to 780 nm
 /// }
 /// ```
+///
+/// Dyn compatible: `&dyn Basis<N>`.
 pub trait Basis<const N: usize> {
     /// The functions at a wavelength, in nanometres. Finite.
     fn at(&self, wavelength: f32) -> [f32; N];
@@ -34,6 +36,9 @@ pub trait Basis<const N: usize> {
         self.at(wavelength).map(|b| b * factor)
     }
 }
+
+// Its docs say so.
+const _: Option<&dyn Basis<3>> = None;
 
 impl<const N: usize, F: Fn(f32) -> [f32; N]> Basis<N> for F {
     #[inline]

@@ -9,6 +9,8 @@ use crate::Contribution;
 ///
 /// A path may have several such vertices: each is one of the batch, with the part of the contribution that arrives there and not at a later one.
 /// They may come from several cameras, frames or points in time.
+///
+/// Dyn compatible: `&dyn PathVertex<Contribution = C>`.
 pub trait PathVertex {
     /// What is averaged.
     type Contribution: Contribution;
@@ -25,6 +27,9 @@ pub trait PathVertex {
         1.0
     }
 }
+
+// Its docs say so.
+const _: Option<&dyn PathVertex<Contribution = f32>> = None;
 
 /// Vertices with a unit normal.
 pub trait HasNormal {

@@ -33,10 +33,15 @@ pub(crate) const LEAST: f64 = f64::EPSILON / 2.0;
 /// assert_eq!(near_the_eye.decide(photon, 0.2).map(|p| p.flux), Some(8.0));
 /// assert_eq!(near_the_eye.decide(photon, 0.3), None);
 /// ```
+///
+/// Dyn compatible: `&dyn Deposition`.
 pub trait Deposition {
     /// The probability to store a photon that arrives at `position` from `wi`.
     fn probability(&self, position: [f32; 3], wi: [f32; 3]) -> f64;
 }
+
+// Its docs say so.
+const _: Option<&dyn Deposition> = None;
 
 impl<P: Fn([f32; 3], [f32; 3]) -> f64> Deposition for P {
     #[inline]

@@ -26,6 +26,8 @@
 /// photon_map::check::check_flux(&samples, |flux| flux.0.map(f64::from), 1e-6)?;
 /// # Ok::<(), photon_map::check::Violation>(())
 /// ```
+///
+/// Not dyn compatible: it is a number.
 pub trait Flux: Copy {
     /// Nothing.
     const ZERO: Self;

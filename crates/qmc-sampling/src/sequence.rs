@@ -6,6 +6,8 @@
 /// - `sample(i, d)` depends on `self`, `i` and `d` only and lies in `[0, 1)`.
 /// - `sample_f32(i, d)` is `sample(i, d)` rounded towards zero, never 1.
 /// - `dimension` is below [`dimensions`](Sequence::dimensions); beyond, an implementation panics or says what it does.
+///
+/// Not dyn compatible: sequences are copied.
 pub trait Sequence: Copy {
     /// The number of dimensions there are; `u32::MAX` where there is no end.
     fn dimensions(&self) -> u32;

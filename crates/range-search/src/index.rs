@@ -31,6 +31,9 @@ use crate::neighbour::Neighbour;
 /// 3. [`k_nearest`](Self::k_nearest) finds the first `k` of these points in the order of [`Neighbour`]: by squared distance, then by id.
 ///
 /// [`check_index`](crate::check::check_index) tests them on anybody's implementation.
+///
+/// Not dyn compatible, because `try_for_each_within` is generic: to choose at run time, implement it for an enum of the
+/// choices.
 pub trait RangeIndex {
     /// Number of points that can be found. At most `u32::MAX`.
     fn len(&self) -> usize;

@@ -43,6 +43,8 @@ pub struct Batch<X, F = f32, T = PrefixSums> {
 }
 
 /// A selection table that can be built of weights.
+///
+/// Not dyn compatible: it is a constructor.
 pub trait Table<F>: Select<F> {
     /// Builds it.
     fn build(weights: impl IntoIterator<Item = F>) -> Self;

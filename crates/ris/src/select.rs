@@ -10,12 +10,17 @@ use crate::uniform::BELOW_ONE;
 /// # Laws
 /// `select(u)` with `u` uniform in `[0, 1)` is `i` with probability `w_i / sum_j w_j`, up to the resolution of `u`; an
 /// index of weight zero is never returned, whatever `u` is. `None` exactly if all weights are zero.
+///
+/// Dyn compatible: `&dyn Select<F>`.
 pub trait Select<F> {
     /// The index that `u` selects.
     fn select(&self, u: F) -> Option<usize>;
     /// Sum of the weights.
     fn sum(&self) -> F;
 }
+
+// Its docs say so.
+const _: Option<&dyn Select<f64>> = None;
 
 /// Below zero, and NaN, is zero: the first index that has weight.
 fn from_zero(u: f64) -> f64 {

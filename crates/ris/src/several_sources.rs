@@ -9,6 +9,8 @@ use crate::{Float, Resampled, Target, Uniform};
 /// # Laws
 /// Those of [`Source`](crate::Source) for each; and wherever the integrand is not zero, at least one source that is given
 /// candidates has a positive density.
+///
+/// Not dyn compatible, because `propose` is generic: to choose at run time, implement it for an enum of the choices.
 pub trait Sources<X, F, const K: usize> {
     /// Draws a candidate from source number `source`.
     fn propose(&self, source: usize, uniform: &mut impl Uniform<F>) -> Option<X>;
@@ -25,10 +27,15 @@ pub trait Sources<X, F, const K: usize> {
 /// # Laws
 /// The weights of all sources sum to one wherever any density is positive; a source of density zero has weight zero. The
 /// densities are `n_k p_k`, counts included.
+///
+/// Dyn compatible: `&dyn Weights<F>`.
 pub trait Weights<F> {
     /// The weight of source number `source`.
     fn weight(&self, source: usize, densities: &[F]) -> F;
 }
+
+// Its docs say so.
+const _: Option<&dyn Weights<f64>> = None;
 
 impl<F, W: Fn(usize, &[F]) -> F> Weights<F> for W {
     #[inline(always)]

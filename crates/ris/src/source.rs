@@ -24,6 +24,8 @@ pub struct Proposal<X, F = f32> {
 ///
 /// A source whose [`density`](Self::density) is never asked (all but those in a [`Mixture`](crate::Mixture)) may
 /// return NaN there.
+///
+/// Not dyn compatible, because `propose` is generic: to choose at run time, implement it for an enum of the choices.
 pub trait Source<X, F = f32> {
     /// Draws a candidate.
     fn propose(&self, uniform: &mut impl Uniform<F>) -> Option<Proposal<X, F>>;

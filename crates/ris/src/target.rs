@@ -12,10 +12,15 @@
 ///
 /// # Measure
 /// `g` is a density with respect to the same measure as the candidates' density `p`.
+///
+/// Dyn compatible: `&dyn Target<X, F>`.
 pub trait Target<X: ?Sized, F = f32> {
     /// The value of `g` at `x`.
     fn score(&self, x: &X) -> F;
 }
+
+// Its docs say so.
+const _: Option<&dyn Target<f64, f64>> = None;
 
 impl<X: ?Sized, F, G: Fn(&X) -> F> Target<X, F> for G {
     #[inline(always)]

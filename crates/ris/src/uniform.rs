@@ -9,10 +9,15 @@ use crate::Float;
 /// # Laws
 /// The numbers lie in `[0, 1)` and are uniformly distributed; for unbiasedness the numbers of one estimate have to be
 /// independent of each other, or (quasi-Monte Carlo) jointly uniform in their cube.
+///
+/// Dyn compatible: `&mut dyn Uniform<F>`.
 pub trait Uniform<F> {
     /// The next number.
     fn next_uniform(&mut self) -> F;
 }
+
+// Its docs say so.
+const _: Option<&dyn Uniform<f64>> = None;
 
 impl<F, G: FnMut() -> F> Uniform<F> for G {
     #[inline(always)]

@@ -11,6 +11,8 @@ use scene_core::Vertex;
 /// # Laws
 /// `radiance(x)` is the radiance that `x` scatters towards `x.wo()`, by the part of its BSDF without Dirac deltas, of light whose last
 /// scattering before `x` was a Dirac delta: photons that arrive at `x` by a specular bounce. Nothing else, or light is counted twice.
+///
+/// Dyn compatible: `&dyn CausticMap<X>`.
 pub trait CausticMap<X: Vertex> {
     /// The caustic's radiance.
     fn radiance(&self, x: &X) -> X::Spectrum;

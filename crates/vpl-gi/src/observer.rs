@@ -21,6 +21,8 @@ pub enum Found {
 /// Sees what an estimator does: for auxiliary images, statistics, filters, and the contributions of single techniques.
 ///
 /// All methods do nothing by default; `()` sees nothing and costs nothing.
+///
+/// Dyn compatible: `&mut dyn Observer<X>`.
 pub trait Observer<X: Vertex> {
     /// The eye path has reached its vertex number `length` (1 is what the camera sees), with this throughput up to there. Contributions follow after
     /// the vertex where they were found; a hit follows after its own.

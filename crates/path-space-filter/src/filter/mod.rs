@@ -16,6 +16,8 @@ use mean::Rule;
 use prepared::Prepared;
 
 /// A filter over the vertices of a batch. Implemented by [`PathSpaceFilter`] and [`JitteredHash`](crate::JitteredHash).
+///
+/// Dyn compatible: `&dyn PathFilter<V>`.
 pub trait PathFilter<V: PathVertex> {
     /// The average of each vertex, among all of them, in batch number `batch`, counted from 1.
     fn average(&self, vertices: &[V], batch: u64) -> Averages<V::Contribution>;
@@ -28,6 +30,9 @@ pub trait PathFilter<V: PathVertex> {
     /// An upper bound of the memory that [`average`](Self::average) takes per vertex, beyond the vertices themselves, in bytes.
     fn bytes_per_vertex(&self) -> usize;
 }
+
+// Its docs say so.
+const _: Option<&dyn PathFilter<crate::Vertex<f32>>> = None;
 
 /// Path space filtering: consistent weighted averages of the contributions of path vertices.
 ///

@@ -4,10 +4,15 @@ use crate::vertex::HasNormal;
 use crate::{PathVertex, Radius};
 
 /// What else keeps vertices apart. Closures `Fn(&V) -> u32` do.
+///
+/// Dyn compatible: `&dyn CellKey<V>`.
 pub trait CellKey<V> {
     /// Vertices with different numbers share no cell.
     fn key(&self, vertex: &V) -> u32;
 }
+
+// Its docs say so.
+const _: Option<&dyn CellKey<f32>> = None;
 
 /// Nothing else keeps vertices apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -26,6 +26,8 @@ pub use laws::{Violation, check_similarity};
 ///
 /// **Cost.** Asked once for each pair of neighbours, with what [`features`](Self::features) took from both vertices beforehand, once for each: these lie
 /// together in memory in the order in which they are read. A closure's features are the whole vertex.
+///
+/// Dyn compatible: `&dyn Similarity<V, Features = T>`.
 pub trait Similarity<V> {
     /// What the weight needs of a vertex.
     type Features: Clone;
@@ -36,6 +38,9 @@ pub trait Similarity<V> {
     /// The weight of `other`'s contribution at `center`.
     fn weight(&self, center: &Self::Features, other: &Self::Features) -> f32;
 }
+
+// Its docs say so.
+const _: Option<&dyn Similarity<f32, Features = f32>> = None;
 
 impl<V: Clone, F: Fn(&V, &V) -> f32> Similarity<V> for F {
     type Features = V;

@@ -8,6 +8,8 @@ use crate::{Bound, BoundError, Deposition};
 /// How much light from one direction matters to an observer in another.
 ///
 /// Implemented for closures `(wi of the photon, wi of the importon) -> weight`. Weights are not negative.
+///
+/// Not dyn compatible, because `weight` is generic: to choose at run time, implement it for an enum of the choices.
 pub trait DirectionWeight {
     /// The weight. The importon's direction is computed when asked for.
     fn weight(&self, photon: [f32; 3], importon: impl FnOnce() -> [f32; 3]) -> f64;

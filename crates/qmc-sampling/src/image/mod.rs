@@ -15,6 +15,8 @@ pub use sobol::SobolImage;
 /// # Laws
 /// - `pixel(index(p, batch)) == Some(p)` for all pixels `p` of the image and all batches below [`batches`](Self::batches).
 /// - `index(p, batch) / batch_len() == batch`; two pixels never share an index.
+///
+/// Dyn compatible: `&dyn ImageSequence`.
 pub trait ImageSequence {
     /// Width and height in pixels.
     fn size(&self) -> [u32; 2];
@@ -34,6 +36,9 @@ pub trait ImageSequence {
     /// Where in its pixel a point lies, from `[0, 0]` to below `[1, 1]`.
     fn offset(&self, index: u64) -> [f64; 2];
 }
+
+// Its docs say so.
+const _: Option<&dyn ImageSequence> = None;
 
 #[cfg(test)]
 mod tests {

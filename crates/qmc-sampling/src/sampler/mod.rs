@@ -50,6 +50,9 @@ pub use z_sobol::{ZSobol, ZSobolSampler};
 /// # Laws
 /// - Two samplers made alike hand out the same numbers.
 /// - [`fork`](Sampler::fork) depends on what the sampler is and on `domain`, not on how many numbers were taken from it.
+///
+/// Not dyn compatible: samplers are cloned, so that paths may fork. To choose at run time, implement it for an enum of
+/// the choices.
 pub trait Sampler: Clone {
     /// The next number.
     fn next_1d(&mut self) -> f32;
@@ -84,6 +87,8 @@ pub trait Split: Sampler {
 /// - A family that is made for an image of `width` times `height` pixels takes stream `y * width + x` for the pixel in
 ///   column `x` and row `y`. The first pair of numbers is the place in the pixel, from `[0, 0]` to below `[1, 1]`. Any other
 ///   stream (light paths, say) belongs to no pixel, and is a randomisation of its own.
+///
+/// Dyn compatible: `&dyn SamplerFamily<Sampler = S>`.
 pub trait SamplerFamily: Sync {
     /// What it hands out.
     type Sampler: Sampler;
@@ -91,6 +96,9 @@ pub trait SamplerFamily: Sync {
     /// The sampler of path `index` of stream `stream`.
     fn sampler(&self, stream: u64, index: u64) -> Self::Sampler;
 }
+
+// Its docs say so.
+const _: Option<&dyn SamplerFamily<Sampler = IndependentSampler>> = None;
 
 /// Shuffles an index such that aligned blocks of powers of two stay together: Owen scrambling of the integer.
 ///

@@ -13,10 +13,15 @@ const MOST_QUERIES: usize = 64;
 /// How far the points of a grid look for neighbours: all as far (`f32`), or each as far as a closure says of its slot.
 ///
 /// Where the radius is negative or NaN nothing is looked for.
+///
+/// Dyn compatible: `&dyn QueryRadius`.
 pub trait QueryRadius {
     /// Radius of the point in a slot. Asked more than once for a point; the answer has to be the same.
     fn at(&self, slot: usize) -> f32;
 }
+
+// Its docs say so.
+const _: Option<&dyn QueryRadius> = None;
 
 impl QueryRadius for f32 {
     #[inline(always)]

@@ -68,6 +68,8 @@ pub struct EmissionSample<S> {
 /// - `sample_emission` returns rays whose flux has the expectation [`power`](Self::power) (for emitters at
 ///   infinity: the power that enters the scene's bounding sphere, see each).
 /// - Both reach every point and direction with positive radiance.
+///
+/// Dyn compatible: `&dyn Emitter<Spectrum = S>`.
 pub trait Emitter {
     /// What light is measured in.
     type Spectrum: Spectrum;
@@ -99,6 +101,9 @@ pub trait Emitter {
     fn radiance(&self, at: Option<&SurfacePoint>, direction: Vec3A) -> Self::Spectrum;
 }
 
+// Its docs say so.
+const _: Option<&dyn Emitter<Spectrum = super::Rgb>> = None;
+
 /// The emitter that was chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChosenEmitter {
@@ -113,9 +118,14 @@ pub struct ChosenEmitter {
 /// # Laws
 /// `choose` returns `id` with probability `probability(from, id)`; these sum to one over all emitters, or
 /// `choose` returns nothing for every `u`. To stay unbiased, every emitter that shines on `from` has a positive one.
+///
+/// Dyn compatible: `&dyn EmitterChoice`.
 pub trait EmitterChoice {
     /// Chooses for the point `from` (`None`: for the start of a light path) with a number in `[0, 1)`.
     fn choose(&self, from: Option<&SurfacePoint>, u: f32) -> Option<ChosenEmitter>;
     /// The probability with which `id` is chosen.
     fn probability(&self, from: Option<&SurfacePoint>, id: EmitterId) -> f32;
 }
+
+// Its docs say so.
+const _: Option<&dyn EmitterChoice> = None;

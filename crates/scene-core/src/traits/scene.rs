@@ -27,6 +27,9 @@ pub enum Sharpness {
 /// - A vertex `v` with `v.emitter() == Some(id)` has `id.index() < emitters().len()`, and
 ///   `v.emitted()` is that emitter's radiance towards `v.wo()`.
 /// - Rays that leave the scene see `emitters()[environment()].radiance(None, direction)`.
+///
+/// Not dyn compatible: its vertices borrow from it. To choose at run time, make what uses it generic, and match
+/// outside.
 pub trait Scene {
     /// What light is measured in.
     type Spectrum: Spectrum;

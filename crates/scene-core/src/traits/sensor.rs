@@ -36,6 +36,8 @@ pub struct SensorConnection {
 ///   `integral W_e |cos| dA dw = 1` over the pixel and the lens, in units of 1/(m^2 sr).
 /// - `sample_ray` followed by `connect` from a point on the ray, with the same `u_lens`, returns the same raster
 ///   position and the opposite direction.
+///
+/// Dyn compatible: `&dyn Sensor`.
 pub trait Sensor {
     /// Width and height in pixels.
     fn resolution(&self) -> [u32; 2];
@@ -48,3 +50,6 @@ pub trait Sensor {
     /// directions that miss the film.
     fn pdf_ray(&self, lens: Vec3A, direction: Vec3A) -> (f32, f32);
 }
+
+// Its docs say so.
+const _: Option<&dyn Sensor> = None;

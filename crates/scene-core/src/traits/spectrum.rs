@@ -15,6 +15,8 @@ use glam::Vec3A;
 /// - Both operations act on each component alone: `(a * b).component(i)` is `a.component(i) * b.component(i)`.
 ///
 /// Scalar renderers implement it for one number, spectral ones for a bundle of wavelengths.
+///
+/// Not dyn compatible: it is a number.
 pub trait Spectrum:
     Copy
     + Debug

@@ -78,6 +78,8 @@ pub struct ScatterSample<S> {
 ///
 /// # Connections
 /// Two eval's and no further cosine make the connection of two vertices: `a.eval(a->b) * b.eval(b->a) / distance^2`.
+///
+/// Not dyn compatible: vertices are cloned. To choose at run time, implement it for an enum of the choices.
 pub trait Vertex: Clone {
     /// What light is measured in.
     type Spectrum: Spectrum;

@@ -7,6 +7,8 @@ use scene_core::{Ray, Spectrum};
 /// # Laws
 /// The expectation of all that [`connect`](Self::connect) and [`finish`](Self::finish) return for one eye path is the sum of the values of the
 /// connections that are not occluded. `finish` leaves nothing behind: the next eye path starts anew.
+///
+/// Not dyn compatible, because `connect` is generic: to choose at run time, implement it for an enum of the choices.
 pub trait ConnectionTests<P: Spectrum> {
     /// Whether [`connect`](Self::connect) traces every ray it is given: rays may then be traced before weights are known.
     const TESTS_ALL: bool = false;

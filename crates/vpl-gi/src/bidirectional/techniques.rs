@@ -12,6 +12,8 @@ use crate::partition::Partition;
 ///
 /// # Laws
 /// Everything is a function of the path alone, whichever technique generated it (densities up to a common factor).
+///
+/// Not dyn compatible: `densities` returns a type of its own. Whoever takes a path is generic.
 pub trait PathTechniques {
     /// `l`.
     fn segments(&self) -> usize;
@@ -52,6 +54,8 @@ pub trait PathTechniques {
 ///
 /// # Laws
 /// The weights of all techniques of a path sum to one if any of them can generate it; those that cannot have weight zero.
+///
+/// Not dyn compatible, because `weight` is generic: to choose at run time, implement it for an enum of the choices.
 pub trait PathHeuristic {
     /// The weight of `technique`.
     fn weight(&self, technique: usize, path: &impl PathTechniques) -> f64;
