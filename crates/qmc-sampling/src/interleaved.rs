@@ -26,10 +26,14 @@ use crate::sequences::SequenceError;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Interleaved {
     columns: u32,
     rows: u32,
 }
+
+#[cfg(feature = "serde")]
+read_through!(Interleaved { columns: u32, rows: u32 } => Self::new(columns, rows));
 
 impl Interleaved {
     /// A tile of `columns` times `rows` pixels.

@@ -7,6 +7,10 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+#[cfg(feature = "serde")]
+#[macro_use]
+mod read_through;
+
 mod float;
 mod hash;
 mod interleaved;

@@ -17,7 +17,6 @@ use alloc::vec::Vec;
 /// # Ok::<(), qmc_sampling::measure::MeasureError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Periodogram {
     /// The largest frequency.
     reach: usize,

@@ -44,12 +44,10 @@ impl<S: Sequence + Sync> SamplerFamily for FromSequence<S> {
 
 /// The sampler of [`FromSequence`]: the sequence and 24 bytes.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SequenceSampler<S>(Groups<Point<S>, [f32; 1]>);
 
 /// One point of one shifted sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Point<S> {
     sequence: S,
     pattern: u64,

@@ -63,7 +63,6 @@ impl SamplerFamily for GlobalHalton {
 
 /// The sampler of [`GlobalHalton`], 24 bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GlobalHaltonSampler {
     /// Hash of the seed and the forks.
     pattern: u64,

@@ -73,7 +73,6 @@ impl SamplerFamily for GlobalSobol {
 
 /// The sampler of [`GlobalSobol`], 24 bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GlobalSobolSampler {
     /// Hash of the seed and the forks.
     pattern: u64,

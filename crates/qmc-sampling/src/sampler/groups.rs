@@ -32,7 +32,6 @@ impl<const N: usize> Group for [f32; N] {
 
 /// Hands out the numbers of a stream, and remembers the rest of the group begun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Groups<S, B> {
     pub(super) stream: S,
     /// The next dimension.

@@ -45,7 +45,6 @@ impl SamplerFamily for Independent {
 
 /// The sampler of [`Independent`], 16 bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IndependentSampler {
     state: u64,
     /// Odd; also what the sampler is, whatever was taken from it.

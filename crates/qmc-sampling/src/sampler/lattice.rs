@@ -39,12 +39,10 @@ impl SamplerFamily for PaddedLattice {
 
 /// The sampler of [`PaddedLattice`], 24 bytes.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PaddedLatticeSampler(Groups<Point, [f32; 1]>);
 
 /// One point of one pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Point {
     pattern: u64,
     index: u64,

@@ -57,12 +57,10 @@ impl SamplerFamily for OwenSobol {
 
 /// The sampler of [`OwenSobol`], 32 bytes.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OwenSobolSampler(Groups<Point, [f32; 4]>);
 
 /// One point of one pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Point {
     /// Hash of the seed, the stream and the forks, in halves: then there is no padding behind the index.
     pattern: [u32; 2],

@@ -27,6 +27,7 @@ use crate::sobol::reversed_second;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct ZSobol {
     size: [u32; 2],
     /// Of the number of paths per pixel.
@@ -35,6 +36,13 @@ pub struct ZSobol {
     log2_points: u32,
     seed: u64,
 }
+
+#[cfg(feature = "serde")]
+read_through!(ZSobol { size: [u32; 2], log2_paths: u32, seed: u64 } => {
+    let [width, height] = size;
+    let paths = 1u32.checked_shl(log2_paths).ok_or(SequenceError::ImageTooLarge { width, height })?;
+    Self::new(width, height, paths, seed)
+});
 
 impl ZSobol {
     /// The points for an image of `width` times `height` pixels and `paths` paths through each.
@@ -76,7 +84,6 @@ impl SamplerFamily for ZSobol {
 
 /// The sampler of [`ZSobol`], 24 bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ZSobolSampler {
     /// Place on the curve and number of the path, with the highest of their bits lowest.
     reversed: u64,

@@ -22,11 +22,15 @@ use crate::sequence::Sequence;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Faure {
     base: u32,
     dimensions: u32,
     scramble: DigitScramble,
 }
+
+#[cfg(feature = "serde")]
+read_through!(Faure { dimensions: u32, scramble: DigitScramble } => Ok(Self::new(dimensions)?.scrambled(scramble)));
 
 impl Faure {
     /// The plain sequence of this many dimensions, in the smallest prime base that has them.

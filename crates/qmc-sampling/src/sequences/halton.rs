@@ -56,9 +56,13 @@ impl Sequence for Halton {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Hammersley {
     points: u64,
 }
+
+#[cfg(feature = "serde")]
+read_through!(Hammersley { points: u64 } => Self::new(points));
 
 impl Hammersley {
     /// The set of `points` points.

@@ -119,10 +119,14 @@ impl Sequence for MultiJittered {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 struct Grid {
     columns: u32,
     rows: u32,
 }
+
+#[cfg(feature = "serde")]
+read_through!(Grid { columns: u32, rows: u32 } => Self::new(columns, rows));
 
 impl Grid {
     fn new(columns: u32, rows: u32) -> Result<Self, SequenceError> {

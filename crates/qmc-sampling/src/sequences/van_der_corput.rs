@@ -16,10 +16,14 @@ use crate::sequence::Sequence;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct VanDerCorput {
     base: u32,
     scramble: DigitScramble,
 }
+
+#[cfg(feature = "serde")]
+read_through!(VanDerCorput { base: u32, scramble: DigitScramble } => Ok(Self::new(base)?.scrambled(scramble)));
 
 impl VanDerCorput {
     /// The plain sequence in this base.

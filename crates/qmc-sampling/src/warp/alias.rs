@@ -27,13 +27,11 @@ use alloc::vec::Vec;
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AliasTable<F = f32> {
     bins: Vec<Bin<F>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Bin<F> {
     /// Below this fraction of the bin its own index is taken, above the alias.
     threshold: F,

@@ -25,7 +25,6 @@ use alloc::vec::Vec;
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PiecewiseConstant1d<F = f32> {
     /// `n + 1` values from 0 to 1.
     cdf: Vec<F>,

@@ -23,7 +23,6 @@ use alloc::vec::Vec;
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PiecewiseConstant2d<F = f32> {
     width: usize,
     rows: PiecewiseConstant1d<F>,

@@ -20,7 +20,6 @@ use core::f64::consts::PI;
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SphericalRectangle {
     /// A frame with the sides as axes, the rectangle on its negative z side.
     frame: [[f64; 3]; 3],

@@ -17,7 +17,6 @@ use core::fmt;
 /// # Ok(()) }
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SphericalTriangle {
     vertices: [[f64; 3]; 3],
     /// The angle at the first vertex.

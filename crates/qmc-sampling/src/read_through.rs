@@ -1,0 +1,20 @@
+//! Settings from files.
+
+/// Reads a type by its fields, through the constructor that checks them: what is written by hand can be wrong.
+macro_rules! read_through {
+    ($type:ident { $($field:ident: $kind:ty),* } => $make:expr) => {
+        /// The fields, before they are checked.
+        #[derive(serde::Deserialize)]
+        struct Unchecked {
+            $($field: $kind),*
+        }
+
+        impl TryFrom<Unchecked> for $type {
+            type Error = $crate::sequences::SequenceError;
+
+            fn try_from(Unchecked { $($field),* }: Unchecked) -> Result<Self, Self::Error> {
+                $make
+            }
+        }
+    };
+}
