@@ -1,4 +1,4 @@
-//! Your own estimator beside ours: errors, rays and time over several renderings, with intervals, and whether both converge to the same image.
+//! Your own estimator beside ours: errors, rays and time over several renderings, their ratios with intervals, and whether both converge to the same image.
 //!
 //! Change `Mine`, and run `cargo run --release --example own_estimator -- [SCENE]` (the Cornell box, or a builtin scene that `lichtwerk list` names).
 //! As it stands `Mine` scatters until a ray hits a light by chance; ours has next event estimation besides.

@@ -18,11 +18,37 @@
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Replications {
     count: u64,
     mean: f64,
     /// Sum of squared differences from the mean.
     squares: f64,
+}
+
+/// What is read, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Unchecked {
+    count: u64,
+    mean: f64,
+    squares: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Replications {
+    type Error = &'static str;
+
+    fn try_from(Unchecked { count, mean, squares }: Unchecked) -> Result<Self, Self::Error> {
+        // More than can ever be counted would overflow when the next comes.
+        if count > u64::from(u32::MAX) * u64::from(u32::MAX) {
+            return Err("so many replications cannot be");
+        }
+        if squares < 0.0 {
+            return Err("the sum of squared differences from the mean cannot be negative");
+        }
+        Ok(Self { count, mean, squares })
+    }
 }
 
 /// When to stop replicating.

@@ -53,4 +53,6 @@ fn what_is_written_by_hand_is_checked() {
         |paths: u32| read!(ZSobol, &format!(r#"{{"size":[8,8],"log2_paths":{paths},"log2_points":0,"seed":1}}"#));
     assert_eq!(z_sobol(4), Ok(ZSobol::new(8, 8, 16, 1).unwrap()));
     assert!(z_sobol(32).is_err() && z_sobol(31).is_ok());
+    assert!(read!(Replications, r#"{"count":18446744073709551615,"mean":0.0,"squares":0.0}"#).is_err());
+    assert!(read!(Replications, r#"{"count":2,"mean":0.0,"squares":-1.0}"#).is_err());
 }

@@ -152,7 +152,7 @@ impl CostModel {
         Self::from_timings(&timings[0], &timings[1])
     }
 
-    /// The robust choice `M = T_Y / T_X`, at least 1 (Talbot, Cline and Egbert 2005, equation 4), for one sample.
+    /// The robust choice `M = T_Y / T_X`, at least 1 and at most 2^24 (Talbot, Cline and Egbert 2005, equation 4), for one sample.
     ///
     /// It gives candidates and samples equal time. Within any time no other choice has more than twice its `M N` and none more
     /// than twice its `N`, so, for real counts, **if `e3 >= e2` in every component** its variance is at most twice the least. Where more candidates hurt

@@ -157,8 +157,7 @@ proptest! {
         let cost = CostModel::new(candidate, sample).unwrap();
         let budget = Budget::within(m, cost, time);
         prop_assert!(budget.candidates() >= 1.0 && budget.samples() >= 1.0);
-        // In f32.
-        prop_assert!(budget.cost(cost) <= time.max(candidate + sample) * (1.0 + 1e-6));
+        prop_assert!(budget.cost(cost) <= time.max(candidate + sample) * (1.0 + 1e-12));
     }
 }
 

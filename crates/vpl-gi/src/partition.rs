@@ -24,12 +24,36 @@ use mis_heuristics::{GeometryPartition, PartitionError};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked", rename_all = "snake_case"))]
 pub enum Threshold {
     /// In 1/length^2, in the scene's unit of length.
     Absolute(f32),
     /// In 1/R^2, where `R` is the radius of [`Scene::bounding_sphere`](scene_core::Scene::bounding_sphere): `t = value / R^2`.
     /// Scaling the scene changes neither the image nor the number of rays.
     Normalised(f32),
+}
+
+/// What is read, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Unchecked {
+    Absolute(f32),
+    Normalised(f32),
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Threshold {
+    type Error = PartitionError;
+
+    fn try_from(unchecked: Unchecked) -> Result<Self, PartitionError> {
+        let (Unchecked::Absolute(value) | Unchecked::Normalised(value)) = unchecked;
+        Partition::hard(value)?;
+        Ok(match unchecked {
+            Unchecked::Absolute(value) => Self::Absolute(value),
+            Unchecked::Normalised(value) => Self::Normalised(value),
+        })
+    }
 }
 
 impl Threshold {

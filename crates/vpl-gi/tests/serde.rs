@@ -21,4 +21,7 @@ fn what_is_no_threshold_is_refused() {
     let error = serde_json::from_str::<Partition>(r#"{"hard":-1}"#).unwrap_err();
     assert!(error.to_string().contains("-1"), "{error}");
     assert!(serde_json::from_str::<Partition>(r#"{"harder":1}"#).is_err());
+    assert_eq!(serde_json::from_str::<Threshold>(r#"{"normalised":2}"#).unwrap(), Threshold::normalised(2.0));
+    let error = serde_json::from_str::<Threshold>(r#"{"absolute":-2}"#).unwrap_err();
+    assert!(error.to_string().contains("-2"), "{error}");
 }

@@ -50,6 +50,7 @@ pub enum EstimatorName {
     InstantRadiosity,
     /// Bidirectional path tracing, weighted by the heuristic: each eye path has a light path of its own, or more that pixels share
     /// (`--light-paths 32 --interleave 3x3`).
+    // In a library call see `LightPathSettings::classical`.
     Bdpt,
     /// Emission and direct light, with samples that neighbouring pixels share without bias.
     RestirDirect,

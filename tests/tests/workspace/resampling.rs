@@ -1,5 +1,5 @@
 //! Resampled direct light, resampled directions, resampled connections and reuse between pixels equal path tracing, for every target, mixture
-//! of sources, M and N.
+//! of sources, M and N; in the quick forms mixtures in turn.
 //!
 //! The long forms: `cargo test --release --workspace -- --ignored`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]

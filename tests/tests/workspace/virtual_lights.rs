@@ -1,4 +1,4 @@
-//! Robust instant global illumination equals path tracing, for every partition and way of sharing light paths.
+//! Robust instant global illumination equals path tracing, for every partition and way of sharing light paths, these two in turn.
 //!
 //! The long forms: `cargo test --release --workspace -- --ignored`.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]

@@ -35,6 +35,8 @@ enum Bug {
     DividesByZero,
     /// The shadow ray starts elsewhere.
     OtherRay,
+    /// The shadow ray ends elsewhere.
+    LongerRay,
     /// What is brighter than all before it is left out, unless it is the first.
     ForgetsTheBright,
 }
@@ -73,6 +75,9 @@ impl ConnectionTests<Rgb> for OneOfAll {
         if self.bug == Bug::OtherRay {
             ray.origin += ray.direction;
         }
+        if self.bug == Bug::LongerRay {
+            ray.max_distance *= 2.0;
+        }
         if self.bug != Bug::SeesThroughEverything && is_occluded(&ray) {
             return Rgb::ZERO;
         }
@@ -104,7 +109,9 @@ fn tests_of_connections_that_lie_are_rejected() {
     rejects(one_of_all(Bug::ForgetsTheBright), "all are seen: component 2");
     assert_eq!(broken_exactly(one_of_all(Bug::Keeps)), "finish leaves nothing behind");
     assert_eq!(broken_exactly(one_of_all(Bug::DividesByZero)), "finish leaves nothing behind");
-    assert_eq!(broken_exactly(one_of_all(Bug::OtherRay)), "only rays of the eye path's own connections are asked for");
+    for bug in [Bug::OtherRay, Bug::LongerRay] {
+        assert_eq!(broken_exactly(one_of_all(bug)), "only rays of the eye path's own connections are asked for");
+    }
 }
 
 /// Says that it tests all.

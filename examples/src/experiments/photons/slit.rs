@@ -41,8 +41,7 @@ pub(in crate::experiments) fn measure(context: &Context) -> Result<Report, Failu
         report.claims.push(at_most("share-of-standard-photons-in-the-dark-room", share(&all.standard), 0.5));
         let claim = at_least("share-of-photons-by-importance-in-the-dark-room", share(&all.importance), 0.5);
         report.claims.push(claim.because(
-            "Most lie on the door's leaf and on the edge of its frame, which are bright, and which the camera sees or importance reaches through the wall. \
-             The share is that of the dark room's own surfaces, 25 times that of the standard map.",
+            "Most lie on the door's leaf and on the edge of its frame, which are bright, and which the camera sees or importance reaches through the wall.",
         ));
         report.claims.push(reported("share-with-cutoff", share(&all.cutoff)));
         let ratio = ratio_of_means(&all.standard.error, &all.importance.error);

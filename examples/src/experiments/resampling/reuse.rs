@@ -145,7 +145,7 @@ fn report_on(setup: &Setup, all: &[Candidate], report: &mut Report) {
     report.claims.push(claim.because(
         "Reuse pays for candidates, which cost time and hardly any rays. Where occlusion is what varies (blob: two area lights, of which more \
          candidates find nothing new), or where neighbours see other lamps (many-lights: small balls in each other's way), each round's shadow \
-         rays eat the gain; in rays it is above one.",
+         rays eat the gain.",
     ));
     let rays = ratio_of_means(&alone.by_rays, &with.by_rays);
     let id = format!("{scene}-gain-of-reuse-in-rays");

@@ -32,7 +32,8 @@ const ROUND_OFF: f64 = 1e-5;
 /// Values are those of `values`, which are finite and not negative, and had better differ in size and in colour. Eye paths
 /// have one of these connections, all of them, or all of them twice with every second one occluded, 20 000 eye paths each, with an
 /// empty one after every eighth. They share `tests`, which brings its own random numbers: the law is
-/// of their expectation, so numbers have to be independent from one eye path to the next.
+/// of their expectation, so numbers have to be independent from one eye path to the next. The t-test takes means of 20 000 for normally
+/// distributed: a value of less than a hundredth of the others' luminance, chosen in proportion to it, would be too rare for that.
 ///
 /// (1) to (3) are exact. The report has one outcome for them, and one for each set of connections and component: these share the level of the check.
 /// Undecided if there is no value that is not black.
@@ -91,14 +92,21 @@ fn eye_path<P: Spectrum, T: ConnectionTests<P>>(
     number: u32,
     connections: &[(P, bool)],
 ) -> Result<Vec<f64>, crate::Violation> {
-    let of = |i: usize| Vec3A::new(i as f32, number as f32, connections.len() as f32);
-    let asked = Cell::new(0_usize);
+    // No two are of the same length.
+    let of = |i: usize| {
+        let origin = Vec3A::new(i as f32, number as f32, connections.len() as f32);
+        Ray::new(origin, Vec3A::Z).up_to(1.0 + i as f32)
+    };
+    let same = |a: &Ray, b: &Ray| (a.origin, a.direction, a.max_distance) == (b.origin, b.direction, b.max_distance);
+    let (asked, asked_for) = (Cell::new(0_usize), Cell::new(None));
     let stranger = Cell::new(None);
     let is_occluded = |ray: &Ray| {
         asked.set(asked.get() + 1);
-        let own = connections.get(ray.origin.x as usize).filter(|_| ray.origin == of(ray.origin.x as usize));
-        if own.is_none() {
-            stranger.set(Some(*ray));
+        let index = ray.origin.x as usize;
+        let own = connections.get(index).filter(|_| same(ray, &of(index)));
+        match own {
+            Some(_) => asked_for.set(Some(index)),
+            None => stranger.set(Some(*ray)),
         }
         own.is_some_and(|(_, occluded)| *occluded)
     };
@@ -106,11 +114,12 @@ fn eye_path<P: Spectrum, T: ConnectionTests<P>>(
     let mut add = |part: P| sum.iter_mut().enumerate().for_each(|(c, sum)| *sum += f64::from(part.component(c)));
     for (i, &(value, occluded)) in connections.iter().enumerate() {
         let before = asked.get();
-        let added = tests.connect(value, Ray::new(of(i), Vec3A::Z).up_to(1.0), is_occluded);
+        let added = tests.connect(value, of(i), is_occluded);
         if T::TESTS_ALL {
             let shown = || format!("{added:?} of {value:?}, occluded: {occluded}");
             let expected = if occluded { P::ZERO } else { value };
-            hold("who tests all asks for the ray of each connection", asked.get() == before + 1, shown)?;
+            let its_own = asked.get() == before + 1 && asked_for.get() == Some(i);
+            hold("who tests all asks for the ray of each connection", its_own, shown)?;
             hold("who tests all adds what is seen at once", added == expected, shown)?;
         }
         add(added);
