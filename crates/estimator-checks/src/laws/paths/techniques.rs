@@ -23,7 +23,8 @@ const ONE: f64 = 1e-6;
 /// (6)  0 <= geometry_term(k) <= 1 / distance_squared(k); zero at infinity
 /// ```
 ///
-/// Within 1e-3 relative where numbers are computed in `f32`. No chance is involved. Cost: all densities, twice.
+/// Within 1e-3 relative where numbers are computed in `f32`. Directions are those between the positions: a renderer that keeps the directions of
+/// its rays, which start a little off the surface, breaks (5) on edges that are short beside that. No chance is involved. Cost: all densities, twice.
 #[must_use = "it decides nothing until it is expected to pass or to reject"]
 pub fn check_path(test: &str, technique: usize, path: &impl PathTechniques) -> Outcome {
     Outcome::of_laws(test, path_laws(technique, path))
