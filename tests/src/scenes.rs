@@ -72,7 +72,8 @@ fn view(b: &mut SceneBuilder) {
     b.look(v(0.0, 2.0, 5.0), v(0.0, 0.5, 0.0), 42.0, SIZE, SIZE);
 }
 
-fn glass(ior: f32) -> Material {
+/// Clear glass in air.
+pub fn glass(ior: f32) -> Material {
     Material::Dielectric {
         int_ior: ior,
         ext_ior: 1.0,

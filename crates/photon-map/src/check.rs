@@ -16,13 +16,10 @@
 //! ```
 
 pub use range_search::check::Violation;
+use range_search::check::hold;
 
 use crate::deposition::LEAST;
 use crate::{Deposition, Flux};
-
-fn hold(law: &'static str, holds: bool, counterexample: impl FnOnce() -> String) -> Result<(), Violation> {
-    if holds { Ok(()) } else { Err(Violation { law, counterexample: counterexample() }) }
-}
 
 /// Where a photon arrives, and where it came from.
 pub type Place = ([f32; 3], [f32; 3]);

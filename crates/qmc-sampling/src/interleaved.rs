@@ -33,7 +33,7 @@ pub struct Interleaved {
 }
 
 #[cfg(feature = "serde")]
-read_through!(Interleaved { columns: u32, rows: u32 } => Self::new(columns, rows));
+read_through!(Interleaved { columns: u32, rows: u32 } => Self::new(columns, rows), SequenceError);
 
 impl Interleaved {
     /// A tile of `columns` times `rows` pixels.

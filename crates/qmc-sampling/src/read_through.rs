@@ -2,7 +2,7 @@
 
 /// Reads a type by its fields, through the constructor that checks them: what is written by hand can be wrong.
 macro_rules! read_through {
-    ($type:ident { $($field:ident: $kind:ty),* } => $make:expr) => {
+    ($type:ident { $($field:ident: $kind:ty),* } => $make:expr, $error:ty) => {
         /// The fields, before they are checked.
         #[derive(serde::Deserialize)]
         struct Unchecked {
@@ -10,7 +10,7 @@ macro_rules! read_through {
         }
 
         impl TryFrom<Unchecked> for $type {
-            type Error = $crate::sequences::SequenceError;
+            type Error = $error;
 
             fn try_from(Unchecked { $($field),* }: Unchecked) -> Result<Self, Self::Error> {
                 $make

@@ -26,30 +26,17 @@ pub struct Replications {
     squares: f64,
 }
 
-/// What is read, before it is checked.
 #[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-struct Unchecked {
-    count: u64,
-    mean: f64,
-    squares: f64,
-}
-
-#[cfg(feature = "serde")]
-impl TryFrom<Unchecked> for Replications {
-    type Error = &'static str;
-
-    fn try_from(Unchecked { count, mean, squares }: Unchecked) -> Result<Self, Self::Error> {
-        // More than can ever be counted would overflow when the next comes.
-        if count > u64::from(u32::MAX) * u64::from(u32::MAX) {
-            return Err("so many replications cannot be");
-        }
-        if squares < 0.0 {
-            return Err("the sum of squared differences from the mean cannot be negative");
-        }
-        Ok(Self { count, mean, squares })
+read_through!(Replications { count: u64, mean: f64, squares: f64 } => {
+    // More than can ever be counted would overflow when the next comes.
+    if count > u64::from(u32::MAX) * u64::from(u32::MAX) {
+        return Err("so many replications cannot be");
     }
-}
+    if squares < 0.0 {
+        return Err("the sum of squared differences from the mean cannot be negative");
+    }
+    Ok(Self { count, mean, squares })
+}, &'static str);
 
 /// When to stop replicating.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -33,6 +33,14 @@ impl fmt::Display for Violation {
 
 impl core::error::Error for Violation {}
 
+/// A law, and what shows that it does not hold.
+///
+/// # Errors
+/// The violation, unless it holds.
+pub fn hold(law: &'static str, holds: bool, counterexample: impl FnOnce() -> String) -> Result<(), Violation> {
+    if holds { Ok(()) } else { Err(Violation { law, counterexample: counterexample() }) }
+}
+
 /// What is within a radius, in the order of [`Neighbour`], by the rule: a loop over all points.
 pub fn expected(points: &[[f32; 3]], center: [f32; 3], radius: f32) -> Vec<Neighbour> {
     let Some(ball) = Ball::new(center, radius) else { return Vec::new() };
@@ -53,14 +61,12 @@ pub fn expected(points: &[[f32; 3]], center: [f32; 3], radius: f32) -> Vec<Neigh
 pub fn check_index(index: &impl RangeIndex, points: &[[f32; 3]]) -> Result<(), Violation> {
     let finite = points.iter().filter(|point| is_finite(**point)).count();
     let (len, skipped) = (index.len(), index.skipped());
-    if len != finite || index.is_empty() != (finite == 0) {
-        let counterexample = format!("len is {len}, is_empty {}, for {finite} of them", index.is_empty());
-        return Err(Violation { law: "len is the number of finite points", counterexample });
-    }
-    if skipped != points.len() - finite {
-        let counterexample = format!("it is {skipped}, and there are {}", points.len() - finite);
-        return Err(Violation { law: "skipped is the number of points that are not finite", counterexample });
-    }
+    let counted = len == finite && index.is_empty() == (finite == 0);
+    let shown = || format!("len is {len}, is_empty {}, for {finite} of them", index.is_empty());
+    hold("len is the number of finite points", counted, shown)?;
+    let rest = points.len() - finite;
+    let shown = || format!("it is {skipped}, and there are {rest}");
+    hold("skipped is the number of points that are not finite", skipped == rest, shown)?;
     for center in centers(points) {
         for radius in radii(points, center) {
             check_query(index, points, center, radius)?;
@@ -80,11 +86,8 @@ pub fn check_query(
     radius: f32,
 ) -> Result<(), Violation> {
     let hold = |law, holds: bool, k: Option<usize>| {
-        if holds {
-            return Ok(());
-        }
-        let with_k = k.map_or(String::new(), |k| format!(", k = {k}"));
-        Err(Violation { law, counterexample: format!("not around {center:?}, radius {radius:e}{with_k}") })
+        let with_k = || k.map_or(String::new(), |k| format!(", k = {k}"));
+        hold(law, holds, || format!("not around {center:?}, radius {radius:e}{}", with_k()))
     };
     let expected = expected(points, center, radius);
     let visits = || {

@@ -3,6 +3,7 @@
 use super::Similarity;
 
 pub use range_search::check::Violation;
+use range_search::check::hold;
 
 /// Tests the laws of [`Similarity`] on all pairs of the given vertices.
 ///
@@ -31,8 +32,4 @@ pub fn check_similarity<V, S: Similarity<V>>(similarity: &S, vertices: &[V]) -> 
         }
     }
     Ok(())
-}
-
-fn hold(law: &'static str, holds: bool, counterexample: impl FnOnce() -> String) -> Result<(), Violation> {
-    if holds { Ok(()) } else { Err(Violation { law, counterexample: counterexample() }) }
 }

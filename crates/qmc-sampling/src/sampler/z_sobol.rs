@@ -42,7 +42,7 @@ read_through!(ZSobol { size: [u32; 2], log2_paths: u32, seed: u64 } => {
     let [width, height] = size;
     let paths = 1u32.checked_shl(log2_paths).ok_or(SequenceError::ImageTooLarge { width, height })?;
     Self::new(width, height, paths, seed)
-});
+}, SequenceError);
 
 impl ZSobol {
     /// The points for an image of `width` times `height` pixels and `paths` paths through each.

@@ -30,7 +30,7 @@ pub struct Faure {
 }
 
 #[cfg(feature = "serde")]
-read_through!(Faure { dimensions: u32, scramble: DigitScramble } => Ok(Self::new(dimensions)?.scrambled(scramble)));
+read_through!(Faure { dimensions: u32, scramble: DigitScramble } => Ok(Self::new(dimensions)?.scrambled(scramble)), SequenceError);
 
 impl Faure {
     /// The plain sequence of this many dimensions, in the smallest prime base that has them.

@@ -62,7 +62,7 @@ pub struct Hammersley {
 }
 
 #[cfg(feature = "serde")]
-read_through!(Hammersley { points: u64 } => Self::new(points));
+read_through!(Hammersley { points: u64 } => Self::new(points), SequenceError);
 
 impl Hammersley {
     /// The set of `points` points.

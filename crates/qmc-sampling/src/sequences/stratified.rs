@@ -126,7 +126,7 @@ struct Grid {
 }
 
 #[cfg(feature = "serde")]
-read_through!(Grid { columns: u32, rows: u32 } => Self::new(columns, rows));
+read_through!(Grid { columns: u32, rows: u32 } => Self::new(columns, rows), SequenceError);
 
 impl Grid {
     fn new(columns: u32, rows: u32) -> Result<Self, SequenceError> {

@@ -23,7 +23,7 @@ pub struct VanDerCorput {
 }
 
 #[cfg(feature = "serde")]
-read_through!(VanDerCorput { base: u32, scramble: DigitScramble } => Ok(Self::new(base)?.scrambled(scramble)));
+read_through!(VanDerCorput { base: u32, scramble: DigitScramble } => Ok(Self::new(base)?.scrambled(scramble)), SequenceError);
 
 impl VanDerCorput {
     /// The plain sequence in this base.
