@@ -72,16 +72,6 @@ fn view(b: &mut SceneBuilder) {
     b.look(v(0.0, 2.0, 5.0), v(0.0, 0.5, 0.0), 42.0, SIZE, SIZE);
 }
 
-/// Clear glass in air.
-pub fn glass(ior: f32) -> Material {
-    Material::Dielectric {
-        int_ior: ior,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    }
-}
-
 fn rough_glass(ior: f32, alpha: f32) -> Material {
     Material::RoughDielectric {
         int_ior: ior,
@@ -124,7 +114,7 @@ pub fn glass_ball() -> SceneDescription {
     let mut b = SceneBuilder::new("glass ball");
     let ground = b.diffuse(0.6, 0.5, 0.4);
     floor(&mut b, ground);
-    let glass = b.material(glass(1.5));
+    let glass = b.material(Material::glass(1.5));
     b.sphere(glass, v(0.4, 0.9, 0.0), 0.7);
     b.cuboid(glass, v(-0.7, 1.2, 2.0), v(0.5, 0.5, 0.05), 0.3);
     let lamp = b.diffuse(0.0, 0.0, 0.0);
@@ -139,7 +129,7 @@ pub fn under_water(alpha: Option<f32>) -> SceneDescription {
     let mut b = SceneBuilder::new("under water");
     let ground = b.diffuse(0.6, 0.5, 0.4);
     floor(&mut b, ground);
-    let surface = b.material(alpha.map_or_else(|| glass(1.5), |alpha| rough_glass(1.5, alpha)));
+    let surface = b.material(alpha.map_or_else(|| Material::glass(1.5), |alpha| rough_glass(1.5, alpha)));
     b.quad(surface, v(-6.0, 1.5, -6.0), Vec3A::Z * 12.0, Vec3A::X * 12.0);
     let lamp = b.diffuse(0.0, 0.0, 0.0);
     b.sphere(lamp, v(0.5, 4.0, 0.0), 1.3).emit(Rgb::new(6.0, 5.0, 4.0));

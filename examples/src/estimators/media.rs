@@ -35,12 +35,7 @@ mod tests {
 
     /// A ball of glass in uniform light, of index 1.4, filled, and 400 paths through it.
     fn values(medium: Medium<Rgb>, max_depth: u32) -> Vec<Rgb> {
-        let glass = Material::Dielectric {
-            int_ior: 1.4,
-            ext_ior: 1.0,
-            specular_reflectance: 1.0.into(),
-            specular_transmittance: 1.0.into(),
-        };
+        let glass = Material::glass(1.4);
         let scene = ReferenceScene::new(furnace(glass.filled_with(medium))).unwrap();
         let direct = NextEvent { heuristic: AnyHeuristic::Power, choice: UniformChoice::new(scene.emitters().len()) };
         let roulette = RussianRoulette::Never;

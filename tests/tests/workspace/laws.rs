@@ -16,6 +16,7 @@ use qmc_sampling::{Independent, Sampler, SamplerFamily};
 use scene_core::builtin::SceneBuilder;
 use scene_core::film::Filter;
 use scene_core::glam::Vec3A;
+use scene_core::material::Material;
 use scene_core::{PowerChoice, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, Vertex};
 use vpl_gi::{ConnectionTests, Partition};
 
@@ -66,7 +67,7 @@ fn caustic() -> ReferenceScene {
     let mut b = SceneBuilder::new("caustic");
     let ground = b.diffuse(0.6, 0.5, 0.4);
     b.quad(ground, Vec3A::new(-3.0, 0.0, -3.0), Vec3A::Z * 6.0, Vec3A::X * 6.0);
-    let glass = b.material(scenes::glass(1.5));
+    let glass = b.material(Material::glass(1.5));
     b.sphere(glass, Vec3A::new(0.0, 0.8, 0.0), 0.6);
     let lamp = b.diffuse(0.0, 0.0, 0.0);
     b.sphere(lamp, Vec3A::new(0.2, 3.2, 0.0), 1.2).emit(Rgb::new(8.0, 6.0, 4.0));

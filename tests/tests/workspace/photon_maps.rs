@@ -24,6 +24,7 @@ use qmc_sampling::{Independent, Sampler, SamplerFamily};
 use scene_core::builtin::SceneBuilder;
 use scene_core::film::{Film, FilmError};
 use scene_core::glam::Vec3A;
+use scene_core::material::Material;
 use scene_core::{
     Emitter, EmitterChoice, Onward, PowerChoice, Ray, ReferenceScene, Rgb, RussianRoulette, Scene, SceneDescription,
     Spectrum, Vertex,
@@ -66,7 +67,7 @@ fn caustic() -> ReferenceScene {
     let mut b = SceneBuilder::new("caustic");
     let ground = b.diffuse(0.6, 0.6, 0.6);
     b.quad(ground, Vec3A::new(-4.0, 0.0, -4.0), Vec3A::Z * 8.0, Vec3A::X * 8.0);
-    let glass = b.material(scenes::glass(1.5));
+    let glass = b.material(Material::glass(1.5));
     b.sphere(glass, Vec3A::new(0.0, 1.7, 0.0), 0.6);
     let lamp = b.diffuse(0.0, 0.0, 0.0);
     b.quad(lamp, Vec3A::new(-0.15, 4.0, -0.15), Vec3A::X * 0.3, Vec3A::Z * 0.3).emit(Rgb::splat(60.0));

@@ -31,12 +31,7 @@ fn materials() -> Vec<(&'static str, Material)> {
         distribution,
         alpha: [0.4; 2],
     };
-    let smooth = Material::Dielectric {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    };
+    let smooth = Material::glass(1.5);
     let plastic = Material::RoughPlastic {
         int_ior: 1.5,
         ext_ior: 1.0,

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use glam::Affine3A;
 
 use super::SceneBuilder;
-use super::finish::{Finishes, glass, tiles};
+use super::finish::{Finishes, tiles};
 use super::form::{Form, v};
 use super::furniture::Room;
 use crate::material::{Material, conductors};
@@ -33,7 +33,7 @@ pub fn glass_ball() -> SceneDescription {
     let mut b = SceneBuilder::new("glass-ball");
     let floor = b.diffuse(0.7, 0.68, 0.64);
     b.quad(floor, v(-3.0, 0.0, -3.0), v(0.0, 0.0, 6.0), v(6.0, 0.0, 0.0));
-    let clear = b.material(glass());
+    let clear = b.material(Material::glass(1.5));
     b.sphere(clear, v(-0.36, 0.30, -0.12), 0.27);
     let gold = b.material(polished("Au"));
     b.form(gold, &ring(0.30, 0.16, 0.012).moved(Affine3A::from_translation(glam::vec3(0.40, 0.0, 0.16))));
@@ -105,7 +105,7 @@ fn table(b: &mut SceneBuilder, f: &Finishes) {
     let leg = |x: f32, z: f32| Form::rounded_box(v(x, 0.35, z), v(0.03, 0.352, 0.03), 0.01, 2);
     b.form(f.wood, &Form::all([leg(-0.98, -0.54), leg(0.38, -0.54), leg(-0.98, 0.54), leg(0.38, 0.54)]));
     let to = |x: f32, z: f32| Affine3A::from_translation(glam::vec3(x, TOP, z));
-    let clear = b.material(glass());
+    let clear = b.material(Material::glass(1.5));
     b.sphere(clear, v(-0.55, TOP + 0.151, -0.22), 0.15);
     let solid = [[0.0, 0.001], [0.085, 0.001], [0.09, 0.006], [0.09, 0.254], [0.085, 0.26], [0.0, 0.26]];
     b.form(clear, &Form::lathe(&solid, 96).moved(to(-0.62, 0.22)));

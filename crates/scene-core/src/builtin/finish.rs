@@ -34,16 +34,6 @@ pub(crate) fn metal(name: &str, alpha: f32) -> Material {
     bare.two_sided()
 }
 
-/// Clear glass.
-pub(crate) fn glass() -> Material {
-    Material::Dielectric {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    }
-}
-
 /// Two colours in rectangles, `columns` x `rows` pairs of them over the unit square.
 pub(crate) fn tiles(color0: Rgb, color1: Rgb, columns: f32, rows: f32) -> Texture {
     Texture::Checkerboard { color0, color1, uv_transform: [columns, 0.0, 0.0, 0.0, rows, 0.0] }

@@ -3,7 +3,8 @@
 use glam::Vec3A;
 
 use super::SceneBuilder;
-use super::finish::{glass, lacquer, metal, tiles};
+use super::finish::{lacquer, metal, tiles};
+use crate::material::Material;
 use crate::reference::SceneDescription;
 use crate::traits::Rgb;
 
@@ -129,7 +130,7 @@ fn table_ware(b: &mut SceneBuilder) {
     let brass = b.material(metal("Au", 0.12));
     let chrome = b.material(metal("Cr", 0.1));
     let porcelain = b.material(lacquer(Rgb::new(0.78, 0.78, 0.76), 0.05));
-    let glass = b.material(glass());
+    let glass = b.material(Material::glass(1.5));
     b.sphere(glass, v(-0.25, 0.52, 0.30), 0.1);
     b.sphere(chrome, v(-0.82, 0.50, 0.52), 0.08);
     // A bowl and a vase.

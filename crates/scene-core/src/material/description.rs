@@ -221,6 +221,12 @@ impl Material {
         Self::Diffuse { reflectance: reflectance.into() }
     }
 
+    /// Clear glass (or water, or diamond) of this index of refraction, in a vacuum: a smooth [`Dielectric`](Self::Dielectric) that takes no light.
+    pub fn glass(int_ior: f32) -> Self {
+        let (specular_reflectance, specular_transmittance) = (1.0.into(), 1.0.into());
+        Self::Dielectric { int_ior, ext_ior: 1.0, specular_reflectance, specular_transmittance }
+    }
+
     /// This material on both sides.
     #[must_use]
     pub fn two_sided(self) -> Self {

@@ -58,12 +58,7 @@ impl<S: Spectrum> Medium<S> {
     ///
     /// // A ball of radius 1 of tinted glass, and a ray from its centre.
     /// let tint = Medium::new(Rgb::new(0.1, 0.2, 0.9), Rgb::ZERO, 0.0)?;
-    /// let glass = Material::Dielectric {
-    ///     int_ior: 1.5,
-    ///     ext_ior: 1.0,
-    ///     specular_reflectance: 1.0.into(),
-    ///     specular_transmittance: 1.0.into(),
-    /// };
+    /// let glass = Material::glass(1.5);
     /// let scene = ReferenceScene::new(furnace(glass.filled_with(tint)))?;
     /// let mut sampler = Independent::new(1).sampler(0, 0);
     /// let exit = tint.walk(&scene, Ray::new(Vec3A::ZERO, Vec3A::X), Rgb::ONE, &mut sampler).expect("nothing ends it");

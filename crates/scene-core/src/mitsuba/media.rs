@@ -36,12 +36,7 @@ impl Importer<'_> {
         let medium = Medium::from_albedo(sigma_t, albedo, g);
         let medium = medium.map_err(|error| object.place.invalid(error.to_string()))?;
         let boundary = match boundary {
-            Material::Mask { .. } => Material::Dielectric {
-                int_ior: 1.0,
-                ext_ior: 1.0,
-                specular_reflectance: 1.0.into(),
-                specular_transmittance: 1.0.into(),
-            },
+            Material::Mask { .. } => Material::glass(1.0),
             dielectric => dielectric,
         };
         Ok(boundary.filled_with(medium))

@@ -124,12 +124,7 @@ fn no_material_reflects_more_than_arrives() {
 
 #[test]
 fn smooth_lossless_materials_conserve_energy_exactly() {
-    let glass = Material::Dielectric {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    };
+    let glass = Material::glass(1.5);
     let mirror = Material::Conductor { eta: Rgb::ZERO, k: Rgb::ONE, specular_reflectance: 1.0.into() };
     for material in [glass.compile().unwrap(), mirror.two_sided().compile().unwrap(), compiled("thindielectric")] {
         let bsdf = material.resolve([0.0; 2]);

@@ -10,7 +10,7 @@ use scene_core::medium::Medium;
 use scene_core::reference::Light;
 use scene_core::{Ray, ReferenceScene, Rgb};
 
-use super::{SUITE, ball, down, glass, moments, slab};
+use super::{SUITE, ball, down, moments, slab};
 
 const CHROMATIC: Rgb = Rgb::new(0.5, 4.0, 20.0);
 
@@ -99,7 +99,7 @@ fn rough_boundaries_hide_the_medium_nearly() {
 fn opaque_things_inside_stay_in_the_medium() {
     let scene = |albedo: f32| {
         let mut b = SceneBuilder::new("ball in ball");
-        let milk = b.material(glass(1.3).filled_with(lossless(CHROMATIC, 0.3)));
+        let milk = b.material(Material::glass(1.3).filled_with(lossless(CHROMATIC, 0.3)));
         let white = b.material(Material::diffuse(albedo));
         b.sphere(milk, Vec3A::ZERO, 1.0).sphere(white, Vec3A::new(0.1, 0.0, 0.2), 0.5);
         b.light(Light::Constant { radiance: Rgb::ONE });

@@ -20,20 +20,15 @@ use scene_core::{Ray, ReferenceScene, Rgb, Scene, Spectrum, TransportMode, Verte
 
 pub(crate) static SUITE: Suite = Suite::with_share("scene-core media", 48, 2e-8);
 
-/// A smooth interface between `int_ior` inside and 1 outside.
-pub(crate) fn glass(int_ior: f32) -> Material {
-    Material::Dielectric { int_ior, ext_ior: 1.0, specular_reflectance: 1.0.into(), specular_transmittance: 1.0.into() }
-}
-
 /// A ball of radius 1 around the origin, filled, in uniform radiance 1.
 pub(crate) fn ball(int_ior: f32, medium: Medium<Rgb>) -> ReferenceScene {
-    ReferenceScene::new(furnace(glass(int_ior).filled_with(medium))).unwrap()
+    ReferenceScene::new(furnace(Material::glass(int_ior).filled_with(medium))).unwrap()
 }
 
 /// A box of this thickness below z = 0, filled, in uniform radiance 1; 50 wide.
 pub(crate) fn slab(int_ior: f32, thickness: f32, medium: Medium<Rgb>) -> ReferenceScene {
     let mut b = SceneBuilder::new("slab");
-    let material = b.material(glass(int_ior).filled_with(medium));
+    let material = b.material(Material::glass(int_ior).filled_with(medium));
     b.cuboid(material, Vec3A::new(0.0, 0.0, -0.5 * thickness), Vec3A::new(25.0, 25.0, 0.5 * thickness), 0.0);
     b.light(Light::Constant { radiance: Rgb::ONE });
     b.look(Vec3A::new(0.0, 0.0, 4.0), Vec3A::ZERO, 40.0, 16, 16);

@@ -8,7 +8,7 @@ use scene_core::medium::Medium;
 use scene_core::reference::Light;
 use scene_core::{Ray, ReferenceScene, Rgb, Scene, Vertex};
 
-use super::{ball, down, glass, path};
+use super::{ball, down, path};
 
 fn milk(sigma_s: f32) -> Medium<Rgb> {
     Medium::new(Rgb::ZERO, Rgb::splat(sigma_s), 0.3).unwrap()
@@ -28,16 +28,16 @@ fn only_dielectrics_hold_media() {
         specular_transmittance: 1.0.into(),
     };
     assert_eq!(refused(thin), "thindielectric");
-    assert_eq!(refused(glass(1.5).filled_with(milk(2.0))), "dielectric");
+    assert_eq!(refused(Material::glass(1.5).filled_with(milk(2.0))), "dielectric");
     let sides =
         Material::TwoSided { front: Box::new(Material::diffuse(0.5)), back: Some(Box::new(Material::diffuse(0.1))) };
     assert_eq!(refused(sides), "diffuse");
-    assert!(glass(1.5).filled_with(milk(1.0)).two_sided().compile().is_err());
-    assert!(glass(f32::NAN).filled_with(milk(1.0)).compile().unwrap_err().to_string().contains("int_ior"));
+    assert!(Material::glass(1.5).filled_with(milk(1.0)).two_sided().compile().is_err());
+    assert!(Material::glass(f32::NAN).filled_with(milk(1.0)).compile().unwrap_err().to_string().contains("int_ior"));
     // Wrappers around the boundary, and inside of the filling, are fine.
-    let masked = Material::Mask { opacity: 0.5.into(), inner: Box::new(glass(1.5).filled_with(milk(1.0))) };
+    let masked = Material::Mask { opacity: 0.5.into(), inner: Box::new(Material::glass(1.5).filled_with(milk(1.0))) };
     assert!(masked.compile().unwrap().interior().is_some());
-    let masked = Material::Mask { opacity: 0.5.into(), inner: Box::new(glass(1.5)) }.filled_with(milk(1.0));
+    let masked = Material::Mask { opacity: 0.5.into(), inner: Box::new(Material::glass(1.5)) }.filled_with(milk(1.0));
     assert_eq!(masked.compile().unwrap().interior(), Some(&milk(1.0)));
 }
 
@@ -63,7 +63,7 @@ fn boundaries_know_their_sides_and_others_change_nothing() {
 #[test]
 fn open_surfaces_end_at_the_bounding_sphere() {
     let mut b = SceneBuilder::new("open");
-    let open = b.material(glass(1.0).filled_with(milk(3.0)));
+    let open = b.material(Material::glass(1.0).filled_with(milk(3.0)));
     b.quad(open, Vec3A::new(-2.0, -2.0, 0.0), Vec3A::X * 4.0, Vec3A::Y * 4.0);
     b.light(Light::Constant { radiance: Rgb::ONE });
     let scene = ReferenceScene::new(b.finish()).unwrap();

@@ -56,15 +56,6 @@ fn plastic() -> Material {
     }
 }
 
-fn glass() -> Material {
-    Material::Dielectric {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    }
-}
-
 fn mirror() -> Material {
     Material::Conductor {
         eta: Rgb::new(0.2, 0.92, 1.1),
@@ -110,7 +101,7 @@ pub(crate) fn glossy() -> ReferenceScene {
 /// A glass ball under a spherical lamp, beside a coated box and a mirror.
 pub(crate) fn glass_ball() -> ReferenceScene {
     let mut b = stage("glass ball");
-    let glass = b.material(glass());
+    let glass = b.material(Material::glass(1.5));
     b.sphere(glass, v(0.6, 0.9, 0.4), 0.7);
     let coated = b.material(plastic());
     b.cuboid(coated, v(-1.0, 0.5, 0.3), v(0.5, 0.5, 0.5), 0.5);
