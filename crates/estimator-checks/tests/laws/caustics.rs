@@ -22,12 +22,7 @@ fn scene() -> ReferenceScene {
     let mut b = SceneBuilder::new("caustic");
     let ground = b.diffuse(0.6, 0.5, 0.4);
     b.quad(ground, Vec3A::new(-3.0, 0.0, -3.0), Vec3A::Z * 6.0, Vec3A::X * 6.0);
-    let glass = b.material(Material::Dielectric {
-        int_ior: 1.5,
-        ext_ior: 1.0,
-        specular_reflectance: 1.0.into(),
-        specular_transmittance: 1.0.into(),
-    });
+    let glass = b.material(Material::glass(1.5));
     b.sphere(glass, Vec3A::new(0.0, 0.8, 0.0), 0.6);
     let coated = b.material(Material::Plastic {
         int_ior: 1.5,

@@ -10,7 +10,7 @@ use crate::laws::{Law, hold};
 use crate::mean::{Truth, mean_is, same_mean_within};
 use crate::moments::Moments;
 use crate::outcome::{Outcome, Report};
-use crate::seed::Uniforms;
+use crate::seed::{Uniforms, seed};
 use crate::suite::Check;
 
 /// Of values in `f32`.
@@ -25,7 +25,7 @@ const ROUND_OFF: f64 = 1e-5;
 /// (4)  E[radiance(x)] is the same if x has its Dirac deltas taken away               t-test, each component
 /// ```
 ///
-/// The map is itself random, so an estimate: `map` makes the `n`-th of several, of numbers of its own. A brute
+/// The map is itself random, so an estimate: `map` makes one of several, with the seed that it is told, which follows from the check's name. A brute
 /// force estimate of the radiance that `x` scatters towards `wo`, by the part of its BSDF without Dirac deltas, of light whose last scattering before `x` was a
 /// Dirac delta, is the caller's, one sample from each stream of numbers; [`caustic_by_brute_force`] is one.
 ///
@@ -88,6 +88,12 @@ impl CausticLaws {
         Self { bias, ..self }
     }
 
+    /// One for each map.
+    fn seeds(&self, check: &Check) -> impl Iterator<Item = u64> + use<> {
+        let first = seed(&format!("{}: maps", check.test()));
+        (0..self.maps).map(move |n| first.wrapping_add(n))
+    }
+
     /// Checks (1) to (3).
     #[must_use = "it decides nothing until it is expected to pass or to reject"]
     pub fn run<X: Vertex, M: CausticMap<X>>(
@@ -98,9 +104,9 @@ impl CausticLaws {
         mut brute_force: impl FnMut(&mut Uniforms) -> X::Spectrum,
     ) -> Report {
         let mut found = of_components::<X::Spectrum>();
-        let laws = (0..self.maps).try_for_each(|n| {
-            let radiance = map(n).radiance(x);
-            amount(x, n, &radiance)?;
+        let laws = self.seeds(&check).try_for_each(|seed| {
+            let radiance = map(seed).radiance(x);
+            amount(x, seed, &radiance)?;
             push(&mut found, &radiance);
             Ok(())
         });
@@ -127,11 +133,11 @@ impl CausticLaws {
     ) -> Report {
         let bare = WithoutDeltas(x.clone());
         let (mut differences, mut sizes) = (of_components::<X::Spectrum>(), of_components::<X::Spectrum>());
-        let laws = (0..self.maps).try_for_each(|n| {
-            let map = map(n);
+        let laws = self.seeds(&check).try_for_each(|seed| {
+            let map = map(seed);
             let (whole, without) = (map.radiance(x), map.radiance(&bare));
-            amount(x, n, &whole)?;
-            amount(&bare, n, &without)?;
+            amount(x, seed, &whole)?;
+            amount(&bare, seed, &without)?;
             push(&mut differences, &(whole - without));
             push(&mut sizes, &whole);
             Ok(())
@@ -150,7 +156,7 @@ impl CausticLaws {
 
 /// (1) and (2)
 fn amount<X: Vertex>(x: &X, map: u64, radiance: &X::Spectrum) -> Law {
-    let shown = || format!("map {map} says {radiance:?} at {}", x.point().position);
+    let shown = || format!("the map with seed {map} says {radiance:?} at {}", x.point().position);
     hold("the radiance of caustics is finite and not negative", is_amount(radiance), shown)?;
     let dark = x.is_connectible() || radiance.is_black();
     hold("there are no caustics where there is nothing but Dirac deltas", dark, shown)

@@ -30,7 +30,7 @@ const ROUND_OFF: f64 = 1e-6;
 /// ```
 ///
 /// Of 6000 paths of up to six segments that some technique can generate: with and without the lens among the techniques, lights
-/// that cannot be hit or are at infinity, specular vertices, densities of all sizes; positions lie in a cube of side 4, for which thresholds should be chosen. They obey no scattering function and no
+/// that cannot be hit or are at infinity, specular vertices, densities of all sizes, edges as long as a thousandth of a unit to a thousand units (thresholds much beyond these are not looked at). They obey no scattering function and no
 /// scene; for those of an estimator see [`CheckedHeuristic`].
 ///
 /// No chance is involved: the paths follow from the name. (3) and (4) hold within 1e-6. A heuristic of densities (`Classical`) is looked at

@@ -8,6 +8,8 @@ use crate::seed::Uniforms;
 
 /// Decimal digits of the smallest and the largest density, over one.
 const DIGITS: f64 = 20.0;
+/// Decimal digits of the smallest and the largest size, over one.
+const SIZES: f32 = 3.0;
 
 /// What a path is, in numbers.
 #[derive(Clone, Debug)]
@@ -25,7 +27,9 @@ pub(super) struct RandomPath {
 impl RandomPath {
     /// A path of `l` segments that some technique can generate.
     pub(super) fn new(l: usize, uniforms: &mut Uniforms) -> Self {
-        let point = |uniforms: &mut Uniforms| Vec3A::from(uniforms.array::<3>().map(|u| 4.0 * u as f32));
+        // Of all sizes, so that some of them are beyond any threshold.
+        let side = 10.0_f32.powf(SIZES * (2.0 * uniforms.next_f32() - 1.0));
+        let point = |uniforms: &mut Uniforms| Vec3A::from(uniforms.array::<3>().map(|u| side * u as f32));
         let chance = |uniforms: &mut Uniforms, probability: f64| uniforms.next_f64() < probability;
         let mut positions: Vec<Option<Vec3A>> = (0..=l).map(|_| Some(point(uniforms))).collect();
         if chance(uniforms, 0.2) {
@@ -56,7 +60,7 @@ impl RandomPath {
             if possible { density } else { 0.0 }
         });
         let densities = densities.collect();
-        let towards = (point(uniforms) - Vec3A::splat(2.0)).try_normalize().unwrap_or(Vec3A::Z);
+        let towards = (point(uniforms) / side - Vec3A::splat(0.5)).try_normalize().unwrap_or(Vec3A::Z);
         Self { positions, towards, geometry, specular, connect, hit, densities }
     }
 
