@@ -16,6 +16,8 @@ use qmc_sampling::sampler::{
 use qmc_sampling::sequences::SequenceError;
 use qmc_sampling::{Independent, IndependentSampler, OwenSobol, OwenSobolSampler, Sampler, SamplerFamily};
 
+use crate::values::name_of;
+
 /// A sampler of `qmc-sampling` by name.
 ///
 /// The first two numbers of a path are its place in its pixel, which the reconstruction filter turns into an offset from
@@ -68,7 +70,7 @@ impl SamplerName {
 
     /// Its name on the command line.
     pub fn name(self) -> String {
-        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+        name_of(self)
     }
 }
 

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use clap::ValueEnum;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::output::ImageFormat;
@@ -81,7 +82,16 @@ pub(crate) fn folder() -> impl TypedValueParser<Value = PathBuf> {
 
 /// The folder that was meant, perhaps.
 fn stem(path: &Path) -> String {
-    path.with_extension("").display().to_string()
+    let mut path = path.to_owned();
+    while ImageFormat::of(&path).is_ok() {
+        path.set_extension("");
+    }
+    path.display().to_string()
+}
+
+/// The name of a value on the command line.
+pub(crate) fn name_of(value: impl ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -121,6 +131,7 @@ mod tests {
             let message = parse(wrong).unwrap_err();
             assert!(message.contains("expected a folder, as in ") && message.contains(wrong), "{message}");
         }
+        assert!(parse("out/x.exr.png").unwrap_err().contains("expected a folder, as in out/x;"));
         let parent = tempfile::tempdir().unwrap();
         let odd = parent.path().join("odd.png");
         std::fs::create_dir(&odd).unwrap();

@@ -95,7 +95,16 @@ fn render_writes_images_and_stats_and_says_nothing_in_a_pipe() {
         ]
         .concat();
         documented.extend(["ranks", "gathered_bytes", "received_bytes"]);
-        documented.extend(["heuristic", "lights", "sampler", "seed", "max_depth", "path_filter", "renderer"]);
+        documented.extend([
+            "heuristic",
+            "lights",
+            "sampler",
+            "seed",
+            "max_depth",
+            "path_filter",
+            "details",
+            "renderer",
+        ]);
         documented.sort_unstable();
         assert_eq!(keys, documented);
         assert_eq!((&stats["scene"], &stats["estimator"]), (&"cornell-box".into(), &estimator.into()));
@@ -765,6 +774,16 @@ fn images_are_merged_once_and_with_their_like() {
         &["c.exr: its scene is 'furnace-box'", "a.exr"],
     );
     fails(folder.path(), &["merge", "a.exr", "d.exr", "--out", "e.exr"], &["d.exr: its maxDepth is '2'"]);
+    // Forms of one estimator, and what only one of them has.
+    render("cornell-box", &["--estimator", "bdpt", "--out", "f.exr"]);
+    render("cornell-box", &["--estimator", "bdpt", "--light-paths", "4", "--seed", "9", "--out", "g.exr"]);
+    fails(
+        folder.path(),
+        &["merge", "f.exr", "g.exr", "--out", "e.exr"],
+        &["g.exr: its lightPaths is", "light_paths: 4"],
+    );
+    render("cornell-box", &["--filter", "tent", "--seed", "9", "--out", "h.exr"]);
+    fails(folder.path(), &["merge", "h.exr", "a.exr", "--out", "e.exr"], &["a.exr: its reconstruction is 'as usual'"]);
     // Images of other programs, or what was made of ours by them.
     let change = |name: &str, change: &dyn Fn(&LayeredImage) -> LayeredImage| {
         save_image(&folder.path().join(name), &change(&image(folder.path(), "b.exr")), 0.0).unwrap();

@@ -1,5 +1,6 @@
 //! What a render did, for scripts.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,8 @@ pub struct RenderStats {
     pub max_depth: i64,
     /// The path space filter with its settings; nothing without one.
     pub path_filter: Option<String>,
+    /// What else the image has among its attributes: settings that only some estimators have, by name.
+    pub details: BTreeMap<String, String>,
     /// Name and version of the program.
     pub renderer: String,
     /// Width in pixels.
@@ -108,6 +111,7 @@ mod tests {
             "seed",
             "max_depth",
             "path_filter",
+            "details",
             "renderer",
             "width",
             "height",

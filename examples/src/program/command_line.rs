@@ -10,8 +10,10 @@ use super::arguments::headings::OF_ALL;
 /// `-h` tells what all estimators have, `--help` everything. Negative numbers are values: their option says that it takes none.
 pub(super) fn command_line() -> Command {
     Arguments::command().mut_subcommands(|command| {
-        let has_more = command.get_arguments().any(is_special);
-        let command = command.mut_args(refined);
+        // What `frames` is for is the path space filter: there it is nothing special.
+        let hides = command.get_name() != "frames";
+        let has_more = hides && command.get_arguments().any(is_special);
+        let command = command.mut_args(|argument| refined(argument, hides));
         match has_more {
             true => command.after_help(MORE).after_long_help(NAMES),
             false => command,
@@ -27,10 +29,10 @@ fn is_special(argument: &Arg) -> bool {
     argument.get_help_heading().is_some_and(|heading| !OF_ALL.contains(&heading))
 }
 
-fn refined(argument: Arg) -> Arg {
+fn refined(argument: Arg, hides: bool) -> Arg {
     let is_option_with_value = argument.get_long().is_some() && argument.get_action().takes_values();
-    let is_special = is_special(&argument);
-    argument.hide_short_help(is_special).allow_negative_numbers(is_option_with_value)
+    let is_hidden = hides && is_special(&argument);
+    argument.hide_short_help(is_hidden).allow_negative_numbers(is_option_with_value)
 }
 
 #[cfg(test)]
@@ -97,6 +99,8 @@ mod tests {
             }
             assert!(short.contains(MORE) && long.contains(NAMES));
         }
+        let frames = help(&["frames", "-h"]);
+        assert!(frames.contains("--filter-memory") && !frames.contains(MORE), "{frames}");
     }
 
     /// What a subcommand cannot do without.

@@ -4,7 +4,7 @@ use scene_core::film::Film;
 use serde::{Deserialize, Serialize};
 
 use super::RenderArguments;
-use super::filtered::PATH_FILTER;
+use super::attributes::{DETAILS, PATH_FILTER};
 use super::parts::Part;
 use crate::distributed::{Portable, Traffic};
 use crate::output::{Checkpoint, CheckpointError, RenderStats, peak_bytes};
@@ -72,6 +72,7 @@ impl Done {
             seed: arguments.seed,
             max_depth: name("maxDepth").parse().unwrap_or(-1),
             path_filter: setting(PATH_FILTER),
+            details: DETAILS.iter().filter_map(|key| Some(((*key).to_owned(), setting(key)?))).collect(),
             renderer: name("renderer"),
             width,
             height,

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
 use qmc_sampling::SamplerFamily;
 use scene_core::film::{Attribute, LayeredImage, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
 use super::Failure;
+use super::attributes::attributes;
 use super::finish::{Finish, Run};
 use super::render::{EstimatorName, RenderSettings};
 use crate::estimators::{LightEstimator, NoLightPaths};
@@ -76,9 +76,6 @@ impl Finish for PathFilterName {
     }
 }
 
-/// Name of the attribute that tells the filter.
-pub(super) const PATH_FILTER: &str = "pathFilter";
-
 /// The filter and its settings, to be compared.
 pub(super) fn describe(name: PathFilterName, filtering: &FilterSettings) -> String {
     format!("{name:?} {filtering:?}")
@@ -96,20 +93,11 @@ pub(super) fn earlier(
     if [image.width(), image.height()] != [width, height] {
         return Err(refuse(format!("it has {} x {} pixels, not {width} x {height}", image.width(), image.height())));
     }
-    let name = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned()).unwrap_or_default();
-    let Some(filter) = settings.path_filter else {
+    if settings.path_filter.is_none() {
         return Err(refuse("--continue goes with --filter psf or psf-hash".to_owned()));
-    };
-    let same = [
-        (PATH_FILTER, describe(filter, &settings.filtering)),
-        ("maxDepth", settings.max_depth_text()),
-        ("scene", scene.name().to_owned()),
-        ("estimator", name(settings.estimator.to_possible_value())),
-        ("sampler", name(settings.sampler.to_possible_value())),
-        ("seed", settings.seed.to_string()),
-    ];
-    for (key, now) in same {
-        let then = image.attribute(key).map(ToString::to_string).unwrap_or_default();
+    }
+    for (key, now) in attributes(scene, settings) {
+        let then = image.attribute(&key).map(ToString::to_string).unwrap_or_default();
         if then != now {
             return Err(refuse(format!("its {key} is '{then}', not '{now}'")));
         }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use scene_core::film::{Film, LayeredImage, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
-use super::filtered::{self, PATH_FILTER};
+use super::attributes::attributes;
+use super::filtered;
 use super::render::{EstimatorName, RenderSettings};
 use super::{Failure, FramesArguments, load_description, report};
 use crate::estimators::AmbientOcclusion;
@@ -58,7 +59,7 @@ pub(super) fn run(arguments: &FramesArguments) -> Result<(), Failure> {
         }
     }
     for (file, film) in &images {
-        let image = annotated(arguments, &settings, film)?;
+        let image = annotated(arguments, &settings, &frames[0].scene, film)?;
         for extension in ["exr", "png"] {
             save_image(&with_extension(file, extension), &image, arguments.exposure)?;
         }
@@ -177,11 +178,18 @@ fn render<E: Observable>(
     Ok(films)
 }
 
-fn annotated(arguments: &FramesArguments, settings: &RenderSettings, film: &Film) -> Result<LayeredImage, Failure> {
+fn annotated(
+    arguments: &FramesArguments,
+    settings: &RenderSettings,
+    first: &ReferenceScene,
+    film: &Film,
+) -> Result<LayeredImage, Failure> {
     let mut image = film.develop(0);
     let pixels = u64::from(film.width()) * u64::from(film.height());
     image.set_attribute(SAMPLES_PER_PIXEL, film.samples() / pixels.max(1))?;
-    image.set_attribute(PATH_FILTER, filtered::describe(arguments.filter, &settings.path_filtering()))?;
+    for (key, text) in attributes(first, settings) {
+        image.set_attribute(&key, text)?;
+    }
     image.set_attribute("scene", arguments.scenes.join(", "))?;
     Ok(image)
 }

@@ -2,12 +2,13 @@
 
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Args, Command, ValueEnum};
+use clap::{ArgMatches, Args, Command};
 
 use super::RenderArguments;
 use super::render::EstimatorName;
 use crate::choices::LightSelection;
 use crate::resampling::DirectName;
+use crate::values::name_of;
 
 /// Warnings about options of `render` that were given and are not looked at. What an option belongs to is the heading of its help.
 pub(super) fn warnings(matches: &ArgMatches, arguments: &RenderArguments) -> Vec<String> {
@@ -60,7 +61,7 @@ pub(super) fn check(matches: &ArgMatches, arguments: &RenderArguments) -> Result
         LightSelection::Photons if direct != DirectName::Nee => "--lights photons goes with --direct nee alone",
         _ => return Ok(()),
     };
-    let name = direct.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();
+    let name = name_of(direct);
     let text = format!("{reason}, and contradicts --direct {name}: give one of both");
     Err(RenderArguments::augment_args(Command::new("lichtwerk render")).error(ErrorKind::ArgumentConflict, text))
 }

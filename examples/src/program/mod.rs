@@ -1,6 +1,7 @@
 //! The `lichtwerk` program: its subcommands as functions.
 
 mod arguments;
+mod attributes;
 mod command_line;
 mod compare;
 mod diff;

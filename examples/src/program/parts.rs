@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 use scene_core::film::{Film, LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
-use super::filtered::{PATH_FILTER, filter_and_batch};
-use super::render::{EstimatorName, RenderSettings, attributes};
+use super::attributes::{DETAILS, NAMED, attributes};
+use super::filtered::filter_and_batch;
+use super::render::{EstimatorName, RenderSettings};
 use super::{Failure, MergeArguments, RenderArguments, report, tell};
 use crate::distributed::{Ranks, share};
 use crate::light_paths::smooth;
@@ -369,8 +370,8 @@ pub(super) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Settings that are the same in all parts of an image. Those of older files, or of other programs, may be missing.
-const SAME: [&str; 6] = ["scene", "estimator", "maxDepth", "heuristic", "lights", PATH_FILTER];
+/// Settings that parts of an image may differ in: which samples they have, and who drew them.
+const DIFFERENT: [&str; 3] = ["sampler", "seed", "renderer"];
 
 fn merged_images(paths: &[PathBuf]) -> Result<LayeredImage, Failure> {
     let read = |path: &PathBuf| LayeredImage::read_exr(path).map_err(Failure::from);
@@ -410,10 +411,13 @@ fn check_alike(all: &[(&PathBuf, &LayeredImage)]) -> Result<(), Failure> {
         if let Some((name, _)) = image.channels().find(|(name, _)| first.channel(name).is_none()) {
             return refuse(format!("has a channel '{name}', and {} has none", first_path.display()));
         }
-        for key in SAME {
+        // Settings of older files, or of other programs, may be missing; of images that tell details, each has those that apply.
+        let tell_details = [first, image].iter().all(|image| DETAILS.iter().any(|key| text(image, key).is_some()));
+        for key in NAMED.iter().chain(&DETAILS).filter(|key| !DIFFERENT.contains(key)) {
             let (one, other) = (text(first, key), text(image, key));
-            if one.is_some() && other.is_some() && one != other {
-                let [one, other] = [one, other].map(Option::unwrap_or_default);
+            let are_told = (one.is_some() && other.is_some()) || (tell_details && DETAILS.contains(key));
+            if are_told && one != other {
+                let [one, other] = [one, other].map(|text| text.unwrap_or_else(|| "as usual".to_owned()));
                 let message = format!("its {key} is '{other}', that of {} '{one}'", first_path.display());
                 return Err(named(path, &message));
             }

@@ -1,6 +1,5 @@
 //! `lichtwerk render`.
 
-use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -13,7 +12,6 @@ use scene_core::{RayCounts, ReferenceScene, RussianRoulette, Scene, Sensor};
 use vpl_gi::{Bidirectional, LightTracing, Residual, RobustIgi};
 
 use super::done::Done;
-use super::filtered::PATH_FILTER;
 use super::finish::{Finish, Plain, Run};
 use super::parts::{Part, described, develop, image_of};
 use super::{Failure, RenderArguments, Told, check_numbers, filtered, find_ranks, report, tell, write_numbers};
@@ -163,7 +161,7 @@ pub struct RenderSettings {
 
 impl RenderSettings {
     /// Whether paths are traced in the usual way, without any resampling.
-    fn is_plain(&self) -> bool {
+    pub(super) fn is_plain(&self) -> bool {
         !self.selects_by_photons() && self.direct_settings().is_plain()
     }
 
@@ -184,7 +182,7 @@ impl RenderSettings {
     }
 
     /// The settings of resampling; `--lights ris` asks for it too.
-    fn direct_settings(&self) -> ResamplingSettings {
+    pub(super) fn direct_settings(&self) -> ResamplingSettings {
         let mut settings = self.resampling.clone();
         if self.lights == LightSelection::Ris {
             settings.direct = DirectName::Ris;
@@ -466,23 +464,6 @@ pub fn render_to_image(
     let rendering = estimate(scene, settings, observe)?;
     let image = develop(&described(scene, settings), &rendering.progress())?;
     Ok((image, rendering))
-}
-
-/// What an image tells about its making.
-pub(super) fn attributes(scene: &ReferenceScene, settings: &RenderSettings) -> BTreeMap<String, String> {
-    let name = |value: Option<clap::builder::PossibleValue>| value.map(|v| v.get_name().to_owned()).unwrap_or_default();
-    let filter = settings.path_filter.map(|name| (PATH_FILTER, filtered::describe(name, &settings.filtering)));
-    let texts = [
-        ("scene", scene.name().to_owned()),
-        ("estimator", name(settings.estimator.to_possible_value())),
-        ("heuristic", name(settings.heuristic.to_possible_value())),
-        ("lights", name(settings.lights.to_possible_value())),
-        ("sampler", name(settings.sampler.to_possible_value())),
-        ("seed", settings.seed.to_string()),
-        ("maxDepth", settings.max_depth_text()),
-        ("renderer", concat!("Lichtwerk ", env!("CARGO_PKG_VERSION")).to_owned()),
-    ];
-    texts.into_iter().chain(filter).map(|(key, text)| (key.to_owned(), text)).collect()
 }
 
 /// Everything that can go wrong before the first ray.
