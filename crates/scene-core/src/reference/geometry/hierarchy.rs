@@ -3,14 +3,11 @@
 //! obvhs builds a binary hierarchy (PLOC with reinsertion, Meister and Bittner 2018 and 2017); [`Collapse`] makes nodes of
 //! four boxes of it, stored axis by axis, so that one ray meets four boxes at once, and leaves of up to four primitives.
 //!
-//! Tried and found no faster, on the machine of `docs/performance.md`: eight boxes a node (in two vectors of four); and putting
-//! children on the stack without branches, in an order kept for each octant of directions. The latter is never mispredicted, but then
-//! the processor must wait for each node before it can start on the next.
+//! Tried and found no faster, on the machine of `docs/performance.md`: eight boxes a node (in two vectors of four).
 
 use core::ops::Range;
 use core::time::Duration;
 
-use arrayvec::ArrayVec;
 use glam::{Vec3A, Vec4};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -18,29 +15,26 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 
 use super::collapse::{Collapse, LANES, WIDTH};
-use crate::ray::Ray;
 
 /// Children waiting at most.
-const STACK_SIZE: usize = 64;
+pub(super) const STACK_SIZE: usize = 64;
 /// Nodes above each other at most: each leaves all its children but one waiting.
 const MAX_DEPTH: usize = STACK_SIZE / (WIDTH - 1);
-/// `1 + 2 gamma_3`: makes the slab test conservative (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
-const FAR_FACTOR: f32 = 1.0 + 6.0 * f32::EPSILON;
 
 /// A child is an inner node, or a pack of primitives if the highest bit is set.
 #[derive(Clone, Copy, Debug, Default)]
-struct Child(u32);
+pub(super) struct Child(pub(super) u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
 
     #[inline(always)]
-    fn is_leaf(self) -> bool {
+    pub(super) fn is_leaf(self) -> bool {
         self.0 & Self::LEAF != 0
     }
 
     #[inline(always)]
-    fn pack(self) -> usize {
+    pub(super) fn pack(self) -> usize {
         (self.0 & !Self::LEAF) as usize
     }
 }
@@ -48,11 +42,11 @@ impl Child {
 /// Four boxes: for each axis the lower and the upper planes. Two cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Node {
-    planes: [[Vec4; 2]; 3],
-    children: [Child; WIDTH],
+pub(super) struct Node {
+    pub(super) planes: [[Vec4; 2]; 3],
+    pub(super) children: [Child; WIDTH],
     /// One bit for each child.
-    occupied: u32,
+    pub(super) occupied: u32,
 }
 
 impl Node {
@@ -91,7 +85,7 @@ fn is_heap(boxes: &[Aabb]) -> bool {
 /// A hierarchy over boxes. Its leaves are packs of up to four of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hierarchy {
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
     /// Where each pack starts in `order`, and where the last one ends.
     starts: Vec<u32>,
     order: Vec<u32>,
@@ -199,65 +193,6 @@ impl Hierarchy {
         }
         hierarchy
     }
-
-    /// Visits the packs that the ray meets before `limit`, about from near to far. `visit` gets a pack and the
-    /// present limit, and returns the new one; a negative limit ends the traversal.
-    #[inline(always)]
-    pub(crate) fn traverse(&self, ray: &Ray, mut limit: f32, mut visit: impl FnMut(usize, f32) -> f32) {
-        if self.nodes.is_empty() {
-            return;
-        }
-        let inverse = reciprocal(ray.direction).to_array().map(Vec4::splat);
-        let origin = ray.origin.to_array().map(Vec4::splat);
-
-        let mut stack = ArrayVec::<(Child, f32), STACK_SIZE>::new();
-        let mut current = Child(0);
-        loop {
-            if current.is_leaf() {
-                limit = visit(current.pack(), limit);
-            } else {
-                // Meet four boxes.
-                let node = &self.nodes[current.0 as usize];
-                let [x, y, z] =
-                    [0, 1, 2].map(|axis| node.planes[axis].map(|plane| (plane - origin[axis]) * inverse[axis]));
-                let t_near = x[0].min(x[1]).max(y[0].min(y[1])).max(z[0].min(z[1]).max(Vec4::ZERO));
-                let t_far = x[0].max(x[1]).min(y[0].max(y[1])).min(z[0].max(z[1])) * FAR_FACTOR;
-                let mut met = t_near.cmple(t_far.min(Vec4::splat(limit))).bitmask() & node.occupied;
-                // Go on with the nearest, keep the others.
-                if met != 0 {
-                    let t_near = t_near.to_array();
-                    let slot = met.trailing_zeros() as usize & 3;
-                    met &= met - 1;
-                    let mut nearest = (node.children[slot], t_near[slot]);
-                    while met != 0 {
-                        let slot = met.trailing_zeros() as usize & 3;
-                        met &= met - 1;
-                        let other = (node.children[slot], t_near[slot]);
-                        let closer = other.1 < nearest.1;
-                        stack.push(if closer { nearest } else { other });
-                        nearest = if closer { other } else { nearest };
-                    }
-                    current = nearest.0;
-                    continue;
-                }
-            }
-            // Take the next that is not yet too far.
-            loop {
-                let Some((child, t)) = stack.pop() else { return };
-                if t <= limit {
-                    current = child;
-                    break;
-                }
-            }
-        }
-    }
-}
-
-/// `1 / x`, finite, with the sign of `x` where it is zero: so that `0 * (1 / 0)` is not NaN.
-#[inline(always)]
-pub(super) fn reciprocal(x: Vec3A) -> Vec3A {
-    const TINY: Vec3A = Vec3A::splat(1e-20);
-    1.0 / Vec3A::select(x.abs().cmplt(TINY), TINY.copysign(x), x)
 }
 
 /// Sorts a range into eight parts of about equal size by the centres along their longest axis.
@@ -277,6 +212,7 @@ fn eighths(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ray::Ray;
 
     fn boxes(count: usize) -> Vec<Aabb> {
         let at = |i: usize, k: f32| (i as f32 * k).sin();
@@ -289,12 +225,18 @@ mod tests {
     }
 
     fn met(hierarchy: &Hierarchy, ray: &Ray) -> Vec<u32> {
-        let mut met = Vec::new();
+        let (mut met, mut in_any_order): (Vec<u32>, Vec<u32>) = (Vec::new(), Vec::new());
         hierarchy.traverse(ray, ray.max_distance, |pack, limit| {
             met.extend(hierarchy.pack(pack));
             limit
         });
+        let found = hierarchy.any(ray, ray.max_distance, |pack| {
+            in_any_order.extend(hierarchy.pack(pack));
+            false
+        });
         met.sort_unstable();
+        in_any_order.sort_unstable();
+        assert!(!found && met == in_any_order);
         met
     }
 

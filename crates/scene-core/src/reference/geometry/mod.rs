@@ -6,6 +6,7 @@ mod hierarchy;
 mod local_geometry;
 mod mesh;
 mod shading_triangle;
+mod traversal;
 #[cfg(test)]
 mod triangle;
 mod triangle_bvh;

@@ -79,12 +79,7 @@ impl TriangleBvh {
     #[inline]
     pub(crate) fn any(&self, ray: &Ray) -> bool {
         let sheared = ShearedRay::new(ray.origin, ray.direction);
-        let mut found = false;
-        self.hierarchy.traverse(ray, ray.max_distance, |pack, limit| {
-            found = self.packs[pack].any(&sheared, limit);
-            if found { -1.0 } else { limit }
-        });
-        found
+        self.hierarchy.any(ray, ray.max_distance, |pack| self.packs[pack].any(&sheared, ray.max_distance))
     }
 }
 

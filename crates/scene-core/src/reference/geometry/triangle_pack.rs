@@ -3,7 +3,7 @@
 use glam::{Vec3A, Vec4};
 
 use super::collapse::LANES;
-use super::hierarchy::reciprocal;
+use super::traversal::reciprocal;
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -200,12 +200,8 @@ impl World {
 
     #[inline]
     fn any_object(&self, ray: &Ray) -> bool {
-        let mut found = false;
-        self.hierarchy.traverse(ray, ray.max_distance, |pack, limit| {
-            found = self.hierarchy.pack(pack).iter().any(|&index| self.objects[index as usize].any(ray));
-            if found { -1.0 } else { limit }
-        });
-        found
+        let found = |pack| self.hierarchy.pack(pack).iter().any(|&index| self.objects[index as usize].any(ray));
+        self.hierarchy.any(ray, ray.max_distance, found)
     }
 
     /// The geometry at a hit.
