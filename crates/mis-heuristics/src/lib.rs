@@ -34,7 +34,8 @@
 //! zero. Densities are asked for at most once per weight, so nothing has to be cached for the crate's sake.
 //!
 //! # Features
-//! `serde`: [`Power`] and [`Cutoff`] as their numbers, checked on the way in (JSON knows no infinite exponent). Off by default;
+//! `serde`: [`Power`] and [`Cutoff`] as their numbers, [`GeometryPartition`] by the name of its constructor, checked on the
+//! way in (JSON knows no infinite exponent, and no infinite threshold). Off by default;
 //! without it there is no dependency. `no_std`, no allocation, no unsafe code. `f32` and `f64` by the sealed trait [`Float`].
 #![no_std]
 #![forbid(unsafe_code)]

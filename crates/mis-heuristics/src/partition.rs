@@ -60,9 +60,46 @@ impl core::error::Error for PartitionError {}
 /// # Ok::<(), mis_heuristics::PartitionError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        try_from = "Named<F>",
+        into = "Named<F>",
+        bound(serialize = "F: Float + serde::Serialize", deserialize = "F: Float + serde::Deserialize<'de>")
+    )
+)]
 pub struct GeometryPartition<F> {
     threshold: F,
     soft: bool,
+}
+
+/// As it is in a file: the name of the constructor, and its threshold.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Named<F> {
+    Hard(F),
+    Soft(F),
+}
+
+#[cfg(feature = "serde")]
+impl<F: Float> TryFrom<Named<F>> for GeometryPartition<F> {
+    type Error = PartitionError;
+
+    fn try_from(named: Named<F>) -> Result<Self, PartitionError> {
+        match named {
+            Named::Hard(threshold) => Self::hard(threshold),
+            Named::Soft(bound) => Self::soft(bound),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<F> From<GeometryPartition<F>> for Named<F> {
+    fn from(GeometryPartition { threshold, soft }: GeometryPartition<F>) -> Self {
+        if soft { Self::Soft(threshold) } else { Self::Hard(threshold) }
+    }
 }
 
 impl<F: Float> GeometryPartition<F> {
