@@ -37,6 +37,8 @@ pub enum LastBounce {
 /// # Ok::<(), photon_map::CausticRuleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Named", into = "Named"))]
 pub struct CausticRule {
     roughness: f32,
 }
@@ -48,6 +50,34 @@ pub enum CausticRuleError {
     /// Negative or NaN.
     #[error("the largest roughness of a caustic generator is at least 0, not {0}")]
     Roughness(f32),
+}
+
+/// As it is in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Named {
+    Specular,
+    Roughness(f32),
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Named> for CausticRule {
+    type Error = CausticRuleError;
+
+    fn try_from(named: Named) -> Result<Self, CausticRuleError> {
+        match named {
+            Named::Specular => Ok(Self::SPECULAR),
+            Named::Roughness(roughness) => Self::new(roughness),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<CausticRule> for Named {
+    fn from(rule: CausticRule) -> Self {
+        rule.roughness().map_or(Self::Specular, Self::Roughness)
+    }
 }
 
 impl CausticRule {

@@ -131,6 +131,8 @@ fn sanitised(p: f64) -> f64 {
 ///
 /// **Source.** Keller and Wald 2000, section 2.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked", rename_all = "snake_case"))]
 pub enum Bound {
     /// The smallest probability, in `(0, 1]`.
     Floor(f64),
@@ -148,6 +150,28 @@ pub enum BoundError {
     /// A cutoff that is no probability.
     #[error("the cutoff of a deposition probability lies in [0, 1], not at {0}")]
     Cutoff(f64),
+}
+
+/// What is read, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Unchecked {
+    Floor(f64),
+    Cutoff(f64),
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Bound {
+    type Error = BoundError;
+
+    fn try_from(unchecked: Unchecked) -> Result<Self, BoundError> {
+        match unchecked {
+            Unchecked::Floor(eps) => Self::Floor(eps),
+            Unchecked::Cutoff(eps) => Self::Cutoff(eps),
+        }
+        .validate()
+    }
 }
 
 impl Bound {

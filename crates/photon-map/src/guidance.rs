@@ -172,9 +172,14 @@ pub struct GuidedDirection {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Guide {
     share: f64,
 }
+
+#[cfg(feature = "serde")]
+read_through!(Guide { share: f64 } => Self::new(share), GuidanceError);
 
 impl Guide {
     /// Guides this share of the directions.

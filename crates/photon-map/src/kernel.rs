@@ -37,6 +37,8 @@ use std::f64::consts::PI;
 /// assert!(Kernel::cone(0.5).is_err());
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Named", into = "Named"))]
 pub enum Kernel {
     /// All photons of the disk alike: Jensen's plain estimate.
     Constant,
@@ -60,6 +62,41 @@ pub enum KernelError {
     /// The cone would be negative at the rim, or is not a number.
     #[error("a cone needs a flatness of at least 1, not {0}")]
     Flatness(f64),
+}
+
+/// As it is in a file: the name, and the flatness of a cone.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Named {
+    Constant,
+    Cone(f64),
+    Epanechnikov,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Named> for Kernel {
+    type Error = KernelError;
+
+    fn try_from(named: Named) -> Result<Self, KernelError> {
+        match named {
+            Named::Constant => Ok(Self::Constant),
+            Named::Cone(flatness) => Self::cone(flatness),
+            Named::Epanechnikov => Ok(Self::Epanechnikov),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Kernel> for Named {
+    fn from(kernel: Kernel) -> Self {
+        match kernel {
+            Kernel::Constant => Self::Constant,
+            // The inverse of an inverse has that inverse again, bit for bit.
+            Kernel::Cone(Cone { inverse_flatness }) => Self::Cone(1.0 / inverse_flatness),
+            Kernel::Epanechnikov => Self::Epanechnikov,
+        }
+    }
 }
 
 impl Kernel {

@@ -2,6 +2,10 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+#[cfg(feature = "serde")]
+#[macro_use]
+mod read_through;
+
 mod bytes;
 mod caustics;
 pub mod check;

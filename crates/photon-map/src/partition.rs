@@ -58,6 +58,8 @@ use crate::{Deposition, DepositionExt, Flux, Photon, Photons};
 /// # Ok::<(), photon_map::PartitionError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Named", into = "Named"))]
 pub struct MapPartition {
     ratio: f64,
     variant: Variant,
@@ -67,7 +69,12 @@ pub struct MapPartition {
 enum Variant {
     OneNumber,
     TwoNumbers,
-    Trajectories { global: u64 },
+    Trajectories {
+        /// Of all photons.
+        paths: u64,
+        /// Whose photons go to the global map.
+        global: u64,
+    },
 }
 
 /// Why there is no such partition.
@@ -85,6 +92,40 @@ pub enum PartitionError {
         /// The number of paths.
         paths: u64,
     },
+}
+
+/// As it is in a file: the name of the constructor, and what it takes.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum Named {
+    OneNumber(f64),
+    TwoNumbers(f64),
+    Trajectories { ratio: f64, paths: u64 },
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Named> for MapPartition {
+    type Error = PartitionError;
+
+    fn try_from(named: Named) -> Result<Self, PartitionError> {
+        match named {
+            Named::OneNumber(ratio) => Self::one_number(ratio),
+            Named::TwoNumbers(ratio) => Self::two_numbers(ratio),
+            Named::Trajectories { ratio, paths } => Self::trajectories(ratio, paths),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<MapPartition> for Named {
+    fn from(MapPartition { ratio, variant }: MapPartition) -> Self {
+        match variant {
+            Variant::OneNumber => Self::OneNumber(ratio),
+            Variant::TwoNumbers => Self::TwoNumbers(ratio),
+            Variant::Trajectories { paths, .. } => Self::Trajectories { ratio, paths },
+        }
+    }
 }
 
 impl MapPartition {
@@ -120,7 +161,7 @@ impl MapPartition {
             return Err(PartitionError::NoPath { ratio, paths });
         }
         // Above 2^53 paths the product may round up.
-        Ok(Self { variant: Variant::Trajectories { global: global.min(paths) }, ..partition })
+        Ok(Self { variant: Variant::Trajectories { paths, global: global.min(paths) }, ..partition })
     }
 
     /// The ratio `q`.
@@ -145,7 +186,7 @@ impl MapPartition {
             _ if photon.caustic => (true, 1.0, if self.variant == Variant::OneNumber { u[0] } else { u[1] }),
             Variant::OneNumber => (u[0] < self.ratio, 1.0 / self.ratio, u[0] / self.ratio),
             Variant::TwoNumbers => (u[0] < self.ratio, 1.0 / self.ratio, u[1]),
-            Variant::Trajectories { global } => (path < global, 1.0, u[1]),
+            Variant::Trajectories { global, .. } => (path < global, 1.0, u[1]),
         };
         if !passes {
             return None;
@@ -157,7 +198,7 @@ impl MapPartition {
     /// Whether a path can store anything in the global map: if not, it may end when it cannot become caustic any more.
     #[must_use]
     pub fn fills_global_map(&self, path: u64) -> bool {
-        !matches!(self.variant, Variant::Trajectories { global } if path >= global)
+        !matches!(self.variant, Variant::Trajectories { global, .. } if path >= global)
     }
 
     /// Of `traced` paths, how many the global map is to be divided by.
@@ -165,7 +206,7 @@ impl MapPartition {
     pub fn global_paths(&self, traced: u64) -> u64 {
         match self.variant {
             Variant::OneNumber | Variant::TwoNumbers => traced,
-            Variant::Trajectories { global } => traced.min(global),
+            Variant::Trajectories { global, .. } => traced.min(global),
         }
     }
 }

@@ -22,6 +22,8 @@ use crate::{Flux, FluxWords};
 /// assert_eq!(photon.light, Some(7));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Photon<F> {
     /// Where it arrived.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::Flux;
 
-/// Why a progressive estimate cannot begin.
+/// Why a progressive estimate cannot begin, or go on from a file.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProgressiveError {
@@ -14,16 +14,37 @@ pub enum ProgressiveError {
     /// The exponent is not strictly between zero and one.
     #[error("alpha lies strictly between 0 and 1, not at {0}")]
     Alpha(f64),
+    /// The squared radius of a file is not positive and finite.
+    #[error("a squared radius is positive and finite, not {0}")]
+    RadiusSquared(f64),
+    /// The iteration of a file is not one of those that are counted exactly.
+    #[error("iterations are counted from 1 to 2^53, not {0}")]
+    Iteration(u64),
+    /// The number of photons of a file is negative or not finite.
+    #[error("the number of photons is finite and not negative, not {0}")]
+    Photons(f64),
+    /// The flux of a file is not finite.
+    #[error("the flux that a point has gathered is not finite")]
+    Flux,
 }
 
 fn validate(radius: f32, alpha: f64) -> Result<f64, ProgressiveError> {
     if !(radius > 0.0 && radius.is_finite()) {
         return Err(ProgressiveError::Radius(radius));
     }
-    if !(alpha > 0.0 && alpha < 1.0) {
-        return Err(ProgressiveError::Alpha(alpha));
-    }
+    exponent(alpha)?;
     Ok(f64::from(radius) * f64::from(radius))
+}
+
+fn exponent(alpha: f64) -> Result<f64, ProgressiveError> {
+    if alpha > 0.0 && alpha < 1.0 { Ok(alpha) } else { Err(ProgressiveError::Alpha(alpha)) }
+}
+
+/// A squared radius that has shrunk already: its root may be too small for an `f32`.
+#[cfg(feature = "serde")]
+fn shrunk(radius_squared: f64) -> Result<f64, ProgressiveError> {
+    let valid = radius_squared > 0.0 && radius_squared.is_finite();
+    if valid { Ok(radius_squared) } else { Err(ProgressiveError::RadiusSquared(radius_squared)) }
 }
 
 /// A radius that shrinks from iteration to iteration, so that the mean of the iterations' estimates is consistent.
@@ -54,11 +75,21 @@ fn validate(radius: f32, alpha: f64) -> Result<f64, ProgressiveError> {
 /// # Ok::<(), photon_map::ProgressiveError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct ProgressiveRadius {
     radius_squared: f64,
     iteration: u64,
     alpha: f64,
 }
+
+#[cfg(feature = "serde")]
+read_through!(ProgressiveRadius { radius_squared: f64, iteration: u64, alpha: f64 } => {
+    if !(1..=1 << f64::MANTISSA_DIGITS).contains(&iteration) {
+        return Err(ProgressiveError::Iteration(iteration));
+    }
+    Ok(Self { radius_squared: shrunk(radius_squared)?, iteration, alpha: exponent(alpha)? })
+}, ProgressiveError);
 
 impl ProgressiveRadius {
     /// The radius of the first iteration.
@@ -128,11 +159,43 @@ impl ProgressiveRadius {
 /// # Ok::<(), photon_map::ProgressiveError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "UncheckedPoint<F>", bound(deserialize = "F: Flux + serde::Deserialize<'de>"))
+)]
 pub struct ProgressivePoint<F> {
     radius_squared: f64,
     photons: f64,
     alpha: f64,
     flux: F,
+}
+
+/// The fields, before they are checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct UncheckedPoint<F> {
+    radius_squared: f64,
+    photons: f64,
+    alpha: f64,
+    flux: F,
+}
+
+#[cfg(feature = "serde")]
+impl<F: Flux> TryFrom<UncheckedPoint<F>> for ProgressivePoint<F> {
+    type Error = ProgressiveError;
+
+    fn try_from(unchecked: UncheckedPoint<F>) -> Result<Self, ProgressiveError> {
+        let UncheckedPoint { radius_squared, photons, alpha, flux } = unchecked;
+        if !(photons >= 0.0 && photons.is_finite()) {
+            return Err(ProgressiveError::Photons(photons));
+        }
+        if !flux.is_finite() {
+            return Err(ProgressiveError::Flux);
+        }
+        Ok(Self { radius_squared: shrunk(radius_squared)?, photons, alpha: exponent(alpha)?, flux })
+    }
 }
 
 impl<F: Flux> ProgressivePoint<F> {

@@ -46,6 +46,8 @@ const LEAST_RADIUS: f32 = 1.0 / 4096.0;
 /// # Ok::<(), photon_map::GatherError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Named", into = "Named"))]
 pub struct Gather {
     /// The number of photons, or none for a fixed radius.
     count: Option<usize>,
@@ -62,6 +64,34 @@ pub enum GatherError {
     /// Too few photons to tell a density.
     #[error("a density from the nearest photons needs at least 2 of them, not {0}")]
     Count(usize),
+}
+
+/// As it is in a file: the name of the constructor, and what it takes.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum Named {
+    Within(f32),
+    Nearest { count: usize, max_radius: f32 },
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Named> for Gather {
+    type Error = GatherError;
+
+    fn try_from(named: Named) -> Result<Self, GatherError> {
+        match named {
+            Named::Within(radius) => Self::within(radius),
+            Named::Nearest { count, max_radius } => Self::nearest(count, max_radius),
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Gather> for Named {
+    fn from(Gather { count, max_radius }: Gather) -> Self {
+        count.map_or(Self::Within(max_radius), |count| Self::Nearest { count, max_radius })
+    }
 }
 
 /// Checks a radius: its square and the inverse of that are ordinary numbers.

@@ -7,6 +7,8 @@ use crate::{Flux, Kernel, PackedPhoton, Photons};
 
 /// How densities are estimated: how far to look, and how photons at a distance count.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct DensityEstimation {
     /// How far.
     pub gather: Gather,
@@ -16,6 +18,8 @@ pub struct DensityEstimation {
 
 /// What photons say about a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Estimate<T> {
     /// The sum of what photons contribute, per area and path.
     pub value: T,

@@ -32,10 +32,19 @@
 /// # Ok::<(), photon_map::ScaleError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct ImportanceScale {
     scale: f64,
     empty_share: f64,
 }
+
+#[cfg(feature = "serde")]
+read_through!(ImportanceScale { scale: f64, empty_share: f64 } => {
+    // With all queries empty there would be no scale.
+    let valid = (0.0..1.0).contains(&empty_share);
+    if valid { Ok(Self { empty_share, ..Self::new(scale)? }) } else { Err(ScaleError::EmptyShare(empty_share)) }
+}, ScaleError);
 
 /// Why there is no scale.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -53,6 +62,9 @@ pub enum ScaleError {
     /// No such scale.
     #[error("a scale is positive and finite, not {0}")]
     Scale(f64),
+    /// No such share of empty queries, in a file.
+    #[error("the share of test queries that found no importance lies in [0, 1), not at {0}")]
+    EmptyShare(f64),
 }
 
 impl ImportanceScale {

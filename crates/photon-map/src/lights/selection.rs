@@ -5,6 +5,8 @@ use super::{ContributingLights, LightTable};
 
 /// How the shadow rays for contributing lights are shared out by importance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Allocation {
     /// Expected counts in proportion to importance: Keller and Wald's stratification by area. A light of little importance
