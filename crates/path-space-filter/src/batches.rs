@@ -37,6 +37,8 @@ pub enum BatchError {
 
 /// A batch of consecutive paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Batch {
     /// Index of its first path in the sequence, `s_i`.
     pub start: u64,
@@ -63,9 +65,34 @@ pub struct Batch {
 /// # Ok::<(), path_space_filter::BatchError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Batches {
+    base: u32,
+    exponent: u32,
+    /// Base to the power of the exponent.
+    #[cfg_attr(feature = "serde", serde(skip_serializing))]
     len: u64,
     next_start: u64,
+}
+
+/// The fields, before they are checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    base: u32,
+    exponent: u32,
+    next_start: u64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Batches {
+    type Error = BatchError;
+
+    fn try_from(Unchecked { base, exponent, next_start }: Unchecked) -> Result<Self, BatchError> {
+        Self::new(base, exponent)?.resume(next_start)
+    }
 }
 
 impl Batches {
@@ -78,7 +105,7 @@ impl Batches {
             return Err(BatchError::Base(base));
         }
         let len = u64::from(base).checked_pow(exponent).filter(|&len| len <= u64::MAX / 2);
-        Ok(Self { len: len.ok_or(BatchError::Length { base, exponent })?, next_start: 0 })
+        Ok(Self { base, exponent, len: len.ok_or(BatchError::Length { base, exponent })?, next_start: 0 })
     }
 
     /// The longest batches that fit into so many bytes.
@@ -137,6 +164,8 @@ impl Batches {
 /// # Ok::<(), path_space_filter::RadiusError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct SwitchOff {
     threshold: u32,
     off: bool,

@@ -18,7 +18,12 @@ const _: Option<&dyn Kernel> = None;
 
 /// The characteristic function of the ball.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "BallName", into = "BallName"))]
 pub struct Ball;
+
+#[cfg(feature = "serde")]
+by_name!(BallName: Ball);
 
 impl Kernel for Ball {
     #[inline(always)]
@@ -29,7 +34,12 @@ impl Kernel for Ball {
 
 /// `1 - t^2`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "EpanechnikovName", into = "EpanechnikovName"))]
 pub struct Epanechnikov;
+
+#[cfg(feature = "serde")]
+by_name!(EpanechnikovName: Epanechnikov);
 
 impl Kernel for Epanechnikov {
     #[inline(always)]
@@ -40,7 +50,12 @@ impl Kernel for Epanechnikov {
 
 /// `(1 - t^2)^3`, the poly6 kernel of smoothed particle hydrodynamics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "Poly6Name", into = "Poly6Name"))]
 pub struct Poly6;
+
+#[cfg(feature = "serde")]
+by_name!(Poly6Name: Poly6);
 
 impl Kernel for Poly6 {
     #[inline(always)]
@@ -52,7 +67,12 @@ impl Kernel for Poly6 {
 
 /// `exp(-4.5 t^2)`: a Gaussian whose standard deviation is a third of the radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "GaussianName", into = "GaussianName"))]
 pub struct Gaussian;
+
+#[cfg(feature = "serde")]
+by_name!(GaussianName: Gaussian);
 
 impl Kernel for Gaussian {
     #[inline(always)]

@@ -2,6 +2,10 @@
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
+#[cfg(feature = "serde")]
+#[macro_use]
+mod by_name;
+
 mod averages;
 mod batches;
 mod contribution;

@@ -20,7 +20,12 @@ const _: Option<&dyn Modulation<crate::Vertex<f32>>> = None;
 
 /// Contributions as they are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "AsStoredName", into = "AsStoredName"))]
 pub struct AsStored;
+
+#[cfg(feature = "serde")]
+by_name!(AsStoredName: AsStored);
 
 impl<V: PathVertex> Modulation<V> for AsStored {
     #[inline]
@@ -44,8 +49,32 @@ impl<V: PathVertex> Modulation<V> for AsStored {
 ///
 /// For RGB contributions; implement [`Modulation`] for others.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "DemodulatedName", into = "DemodulatedName"))]
 pub struct Demodulated {
     floor: f32,
+}
+
+/// As it is in a file.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum DemodulatedName {
+    Demodulated(f32),
+}
+
+#[cfg(feature = "serde")]
+impl From<DemodulatedName> for Demodulated {
+    fn from(DemodulatedName::Demodulated(floor): DemodulatedName) -> Self {
+        Self::with_floor(floor)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Demodulated> for DemodulatedName {
+    fn from(Demodulated { floor }: Demodulated) -> Self {
+        Self::Demodulated(floor)
+    }
 }
 
 impl Demodulated {

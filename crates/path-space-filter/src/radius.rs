@@ -48,12 +48,48 @@ pub enum RadiusError {
 /// let filter = PathSpaceFilter::new(3.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Named", into = "Named"))]
 pub struct Radius {
     /// The part that does not depend on the distance.
     absolute: f32,
     /// Radius over distance.
     slope: f32,
     exponent: f32,
+}
+
+/// As it is in a file: the name of the constructor, what it takes, and the exponent, which is zero if the radius is held.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum Named {
+    Absolute { initial: f32, exponent: f32 },
+    OfDistance { factor: f32, exponent: f32 },
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Named> for Radius {
+    type Error = RadiusError;
+
+    fn try_from(named: Named) -> Result<Self, RadiusError> {
+        let (radius, exponent) = match named {
+            Named::Absolute { initial, exponent } => (Self::absolute(initial)?, exponent),
+            Named::OfDistance { factor, exponent } => (Self::of_distance(factor)?, exponent),
+        };
+        if exponent == 0.0 { Ok(radius.held()) } else { radius.with_exponent(exponent) }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<Radius> for Named {
+    fn from(radius: Radius) -> Self {
+        let Radius { absolute, slope, exponent } = radius;
+        if radius.is_absolute() {
+            Self::Absolute { initial: absolute, exponent }
+        } else {
+            Self::OfDistance { factor: slope, exponent }
+        }
+    }
 }
 
 impl Radius {

@@ -11,6 +11,8 @@ use crate::{Contribution, PathVertex};
 /// vertex, what it emits itself, and **photon map contributions** there, times their attenuation. A density estimate is an average over a disk
 /// already: averaging it again only blurs (section 2.3 of the paper).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PathSample<V, C> {
     /// The vertex, if the path has one that is to be filtered.
     pub vertex: Option<V>,

@@ -53,7 +53,12 @@ impl<const N: usize, F: Fn(f32) -> [f32; N]> Basis<N> for F {
 ///
 /// **Source.** C. Wyman, P.-P. Sloan, P. Shirley, *Simple Analytic Approximations to the CIE XYZ Color Matching Functions*, JCGT 2(2), 2013, the multi-lobe fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "CieXyzName", into = "CieXyzName"))]
 pub struct CieXyz;
+
+#[cfg(feature = "serde")]
+by_name!(CieXyzName: CieXyz);
 
 impl CieXyz {
     /// Integral of the second function over the visible wavelengths, in nm: what divides `Y` if radiance of value 1 is to have `Y = 1`.

@@ -84,6 +84,8 @@ pub trait HasPixel {
 /// The image is formed of `attenuation * average + unfiltered`, which stay with the caller:
 /// [`PathSample`](crate::PathSample) keeps all three together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Vertex<C> {
     /// Where it is.
     pub position: [f32; 3],

@@ -70,6 +70,8 @@ const _: Option<&dyn PathFilter<crate::Vertex<f32>>> = None;
 /// # Ok::<(), path_space_filter::RadiusError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PathSpaceFilter<S = Everything, K = Ball, M = AsStored> {
     radius: Radius,
     similarity: S,

@@ -26,10 +26,31 @@ pub enum ScreenError {
 ///
 /// **Source.** Section 2.2 of the paper; P. Gautron et al., *Path Space Similarity Determined by Fourier Histogram Descriptors*, SIGGRAPH 2014 talks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Screen {
     width: u32,
     height: u32,
     reach: u32,
+}
+
+/// The fields, before they are checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    width: u32,
+    height: u32,
+    reach: u32,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Screen {
+    type Error = ScreenError;
+
+    fn try_from(Unchecked { width, height, reach }: Unchecked) -> Result<Self, ScreenError> {
+        Self::new(width, height, reach)
+    }
 }
 
 impl Screen {

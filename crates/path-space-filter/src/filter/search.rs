@@ -12,6 +12,8 @@ use crate::{Contribution, Kernel, Modulation, PathVertex, Similarity, parallel};
 
 /// How neighbours are found. All find the same ones; averages differ by round-off, since sums run in another order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum Search {
     /// Hash grids, one for each order of magnitude of the radii: the fastest.

@@ -16,7 +16,12 @@ const _: Option<&dyn CellKey<f32>> = None;
 
 /// Nothing else keeps vertices apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "NoKeyName", into = "NoKeyName"))]
 pub struct NoKey;
+
+#[cfg(feature = "serde")]
+by_name!(NoKeyName: NoKey);
 
 impl<V> CellKey<V> for NoKey {
     #[inline(always)]

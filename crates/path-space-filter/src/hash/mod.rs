@@ -47,18 +47,30 @@ use key::{Key, Quantizer};
 /// # Ok::<(), path_space_filter::RadiusError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct JitteredHash<K = NoKey, M = AsStored> {
     radius: Radius,
     key: K,
     modulation: M,
     iterations: u32,
-    normal_steps: f32,
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "read_steps"))]
+    normal_steps: u32,
+}
+
+/// Rounded normals fit a byte per coordinate.
+const MOST_STEPS: u32 = 100;
+
+/// As many as [`JitteredHash::normal_steps`] takes.
+#[cfg(feature = "serde")]
+fn read_steps<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    <u32 as serde::Deserialize>::deserialize(deserializer).map(|steps| steps.min(MOST_STEPS))
 }
 
 impl JitteredHash {
     /// Cells by place and normal alone.
     pub fn new(radius: Radius) -> Self {
-        Self { radius, key: NoKey, modulation: AsStored, iterations: 1, normal_steps: 2.0 }
+        Self { radius, key: NoKey, modulation: AsStored, iterations: 1, normal_steps: 2 }
     }
 }
 
@@ -84,11 +96,11 @@ impl<K, M> JitteredHash<K, M> {
     /// Rounds the components of normals to multiples of `1/steps`: 2 unless set, 0 leaves normals out. At most 100.
     #[must_use]
     pub fn normal_steps(self, steps: u32) -> Self {
-        Self { normal_steps: steps.min(100) as f32, ..self }
+        Self { normal_steps: steps.min(MOST_STEPS), ..self }
     }
 
     fn quantizer(&self, batch: u64, iteration: u32) -> Quantizer {
-        Quantizer::new(self.radius, self.normal_steps, batch, iteration)
+        Quantizer::new(self.radius, self.normal_steps as f32, batch, iteration)
     }
 
     /// The key of each vertex; none if it takes no part.

@@ -31,9 +31,14 @@ fn threshold(value: f32) -> Result<f32, SimilarityError> {
 
 /// Vertices with similar normals: `<n_i, n_j> >= 0.95` in the paper. Keeps light from being carried around corners and through thin walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "NormalConeName", into = "NormalConeName"))]
 pub struct NormalCone {
     min_cosine: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(NormalConeName: NormalCone(f32), |value| value.min_cosine, SimilarityError);
 
 impl NormalCone {
     /// The paper's.
@@ -63,9 +68,14 @@ impl<V: HasNormal> Similarity<V> for NormalCone {
 /// Vertices of similar colour: Euclidean norm of the difference of albedos (or local throughputs) below 0.05 in the paper. Keeps textures crisp where
 /// contributions are taken as stored; needless where they are [demodulated](crate::Demodulated).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "AlbedoDifferenceName", into = "AlbedoDifferenceName"))]
 pub struct AlbedoDifference {
     threshold_squared: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(AlbedoDifferenceName: AlbedoDifference(f32), AlbedoDifference::threshold, SimilarityError);
 
 impl AlbedoDifference {
     /// The paper's.
@@ -76,6 +86,13 @@ impl AlbedoDifference {
     pub fn new(max_difference: f32) -> Result<Self, SimilarityError> {
         let threshold = threshold(max_difference)?;
         Ok(Self { threshold_squared: threshold * threshold })
+    }
+
+    /// A finite threshold that has this square, bit for bit: the root of a rounded square is what was squared, and the
+    /// largest number has an infinite square.
+    #[cfg(feature = "serde")]
+    fn threshold(self) -> f32 {
+        self.threshold_squared.sqrt().min(f32::MAX)
     }
 }
 
@@ -96,9 +113,14 @@ impl<V: HasAlbedo> Similarity<V> for AlbedoDifference {
 
 /// Vertices that are seen from similar directions, for surfaces that are not diffuse.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "ViewConeName", into = "ViewConeName"))]
 pub struct ViewCone {
     min_cosine: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(ViewConeName: ViewCone(f32), |value| value.min_cosine, SimilarityError);
 
 impl ViewCone {
     /// # Errors
@@ -124,7 +146,12 @@ impl<V: HasViewDirection> Similarity<V> for ViewCone {
 
 /// Vertices that see the same point lights. Keeps sharp shadows sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "SameVisibilityName", into = "SameVisibilityName"))]
 pub struct SameVisibility;
+
+#[cfg(feature = "serde")]
+by_name!(SameVisibilityName: SameVisibility);
 
 impl<V: HasVisibility> Similarity<V> for SameVisibility {
     type Features = u32;
@@ -142,7 +169,12 @@ impl<V: HasVisibility> Similarity<V> for SameVisibility {
 
 /// Vertices on the same object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "SameObjectName", into = "SameObjectName"))]
 pub struct SameObject;
+
+#[cfg(feature = "serde")]
+by_name!(SameObjectName: SameObject);
 
 impl<V: HasObject> Similarity<V> for SameObject {
     type Features = u32;
@@ -163,9 +195,14 @@ impl<V: HasObject> Similarity<V> for SameObject {
 /// **Biased before the radius vanishes**, by more than the other weights: it looks at the random ray that made the contribution. Of occluded and free rays
 /// each is averaged with its own kind alone, and so is the variance between the two kinds never averaged away. Choose a generous threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "HitDistanceName", into = "HitDistanceName"))]
 pub struct HitDistance {
     max_difference: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(HitDistanceName: HitDistance(f32), |value| value.max_difference, SimilarityError);
 
 impl HitDistance {
     /// # Errors
@@ -191,9 +228,14 @@ impl<V: HasHitDistance> Similarity<V> for HitDistance {
 
 /// Vertices that are close in time: motion blur, or several frames at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SimilarTimeName", into = "SimilarTimeName"))]
 pub struct SimilarTime {
     max_difference: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(SimilarTimeName: SimilarTime(f32), |value| value.max_difference, SimilarityError);
 
 impl SimilarTime {
     /// # Errors

@@ -4,7 +4,12 @@ use super::Similarity;
 
 /// All vertices are alike: `w = 1`. Consistent, and blurred as far as the radius reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "EverythingName", into = "EverythingName"))]
 pub struct Everything;
+
+#[cfg(feature = "serde")]
+by_name!(EverythingName: Everything);
 
 impl<V> Similarity<V> for Everything {
     type Features = ();
@@ -20,6 +25,7 @@ impl<V> Similarity<V> for Everything {
 
 /// The product of two weights: with binary ones, what both include.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct And<A, B>(A, B);
 
 impl<V, A: Similarity<V>, B: Similarity<V>> Similarity<V> for And<A, B> {

@@ -9,9 +9,14 @@ use crate::vertex::{HasAlbedo, HasNormal};
 ///
 /// For comparison: "using the norms to directly weight the contributions results in higher variance" (section 2.1 of the paper).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "CosinePowerName", into = "CosinePowerName"))]
 pub struct CosinePower {
     exponent: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(CosinePowerName: CosinePower(f32), |value| value.exponent, SimilarityError);
 
 impl CosinePower {
     /// # Errors
@@ -37,9 +42,14 @@ impl<V: HasNormal> Similarity<V> for CosinePower {
 
 /// `exp(-e |a_i - a_j|^2)` of the albedos. For comparison, like [`CosinePower`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "AlbedoFalloffName", into = "AlbedoFalloffName"))]
 pub struct AlbedoFalloff {
     exponent: f32,
 }
+
+#[cfg(feature = "serde")]
+by_name!(AlbedoFalloffName: AlbedoFalloff(f32), |value| value.exponent, SimilarityError);
 
 impl AlbedoFalloff {
     /// # Errors
