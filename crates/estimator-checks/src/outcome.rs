@@ -108,6 +108,7 @@ impl Outcome {
     /// # Panics
     /// With statistic, p-value, threshold and seed, if the claim was refuted or the check could not decide.
     #[track_caller]
+    #[expect(clippy::return_self_not_must_use, reason = "it panics unless it holds: most callers want no more")]
     pub fn expect_pass(self) -> Self {
         assert!(self.passed(), "{self}");
         self
@@ -118,6 +119,7 @@ impl Outcome {
     /// # Panics
     /// If the claim was not refuted, or the check could not decide.
     #[track_caller]
+    #[expect(clippy::return_self_not_must_use, reason = "it panics unless it holds: most callers want no more")]
     pub fn expect_reject(self) -> Self {
         assert!(self.rejected(), "the planted bug was not found: {self}");
         self
@@ -166,6 +168,7 @@ impl Report {
     /// # Panics
     /// With all outcomes, if one did not.
     #[track_caller]
+    #[expect(clippy::return_self_not_must_use, reason = "it panics unless it holds: most callers want no more")]
     pub fn expect_pass(self) -> Self {
         assert!(self.passed(), "{self}");
         self
@@ -176,6 +179,7 @@ impl Report {
     /// # Panics
     /// If none does.
     #[track_caller]
+    #[expect(clippy::return_self_not_must_use, reason = "it panics unless it holds: most callers want no more")]
     pub fn expect_reject(self) -> Self {
         assert!(self.rejected(), "the planted bug was not found: {self}");
         self

@@ -50,6 +50,7 @@ pub trait Float:
 
     /// The number itself if it is positive, else zero; NaN becomes zero. One instruction.
     #[inline(always)]
+    #[must_use]
     fn positive_part(self) -> Self {
         if self > Self::ZERO { self } else { Self::ZERO }
     }

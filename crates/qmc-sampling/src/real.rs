@@ -41,26 +41,36 @@ pub trait Real:
     /// Truncation towards zero; NaN and negative numbers give 0.
     fn to_usize(self) -> usize;
     /// Square root.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
     /// `e` to the power `self`.
+    #[must_use]
     fn exp(self) -> Self;
     /// `e` to the power `self`, less one, precise near zero.
+    #[must_use]
     fn exp_m1(self) -> Self;
     /// Natural logarithm.
+    #[must_use]
     fn ln(self) -> Self;
     /// Natural logarithm of `1 + self`, precise near zero.
+    #[must_use]
     fn ln_1p(self) -> Self;
     /// `self` to the power `exponent`.
+    #[must_use]
     fn powf(self, exponent: Self) -> Self;
     /// Arc cosine; arguments beyond one are clamped.
+    #[must_use]
     fn acos(self) -> Self;
     /// Arc sine; arguments beyond one are clamped.
+    #[must_use]
     fn asin(self) -> Self;
     /// The angle of the vector `(x, self)` in `(-pi, pi]`.
+    #[must_use]
     fn atan2(self, x: Self) -> Self;
     /// Absolute value.
+    #[must_use]
     fn abs(self) -> Self;
     /// Whether neither infinite nor NaN.
     fn is_finite(self) -> bool;

@@ -43,12 +43,14 @@ pub trait Float:
 
     /// The number itself if it is positive and finite, else zero: what counts as a weight.
     #[inline(always)]
+    #[must_use]
     fn weight_or_zero(self) -> Self {
         if self > Self::ZERO && self <= Self::MAX { self } else { Self::ZERO }
     }
 
     /// The smaller of two; the second if the first is NaN.
     #[inline(always)]
+    #[must_use]
     fn at_most(self, bound: Self) -> Self {
         if self < bound { self } else { bound }
     }

@@ -101,12 +101,14 @@ impl Rgb {
 
     /// Each component mapped.
     #[inline]
+    #[must_use]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self::new(f(self.0.x), f(self.0.y), f(self.0.z))
     }
 
     /// Each component clamped to `[low, high]`.
     #[inline]
+    #[must_use]
     pub fn clamp(self, low: f32, high: f32) -> Self {
         Self(self.0.clamp(Vec3A::splat(low), Vec3A::splat(high)))
     }
