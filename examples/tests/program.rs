@@ -12,6 +12,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
 use command::{answer, assert_same_image, fails, image, lichtwerk, names, run, succeeds, text};
+use lichtwerk::experiments::{EXPERIMENTS, Experiment};
 use lichtwerk::output::{Checkpoint, save_image};
 use scene_core::film::LayeredImage;
 use tempfile::TempDir;
@@ -847,4 +848,13 @@ fn a_closed_pipe_is_no_error() {
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), ""));
+}
+
+#[test]
+fn experiments_are_found_by_their_names() {
+    for experiment in EXPERIMENTS {
+        assert_eq!(Experiment::named(experiment.name).map(|found| found.about), Some(experiment.about));
+        assert_ne!(experiment.name, "all", "this means all of them");
+    }
+    assert!(Experiment::named("nothing").is_none());
 }

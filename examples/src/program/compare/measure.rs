@@ -9,7 +9,7 @@ use scene_core::film::LayeredImage;
 use crate::experiments::{Trials, named_seed};
 use crate::output::{Interrupt, Progress};
 use crate::program::{Failure, RenderSettings, render_to_image};
-use crate::render::Budget;
+use crate::render::{Budget, RenderError, Rendering};
 
 /// An estimator that takes part.
 #[derive(Debug)]
@@ -71,6 +71,20 @@ impl Plan<'_> {
     /// Trial by trial and budget by budget, all estimators take turns, and each time another one begins: when the machine gets slower, it
     /// does so for all of them. After an interrupt, what is finished is returned.
     pub(super) fn run(&self, contestants: &[Contestant], interrupt: &Interrupt) -> Result<Vec<Vec<Measured>>, Failure> {
+        self.run_by(contestants, interrupt, |settings| {
+            render_to_image(self.scene, settings, |_| {
+                if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+        })
+    }
+
+    /// The same with any renderer: who tests the order need not compile all estimators.
+    fn run_by(
+        &self,
+        contestants: &[Contestant],
+        interrupt: &Interrupt,
+        mut render: impl FnMut(&RenderSettings) -> Result<(LayeredImage, Rendering), RenderError>,
+    ) -> Result<Vec<Vec<Measured>>, Failure> {
         let mut all = vec![vec![Measured::default(); self.budgets.len()]; contestants.len()];
         let progress = Progress::counting(self.trials * (self.budgets.len() * contestants.len()) as u64, "renderings");
         for trial in 0..self.trials {
@@ -80,13 +94,13 @@ impl Plan<'_> {
                     let contestant = &contestants[index];
                     let seed = self.seed_of(&contestant.name, level, trial);
                     let settings = RenderSettings { budget: *budget, seed, ..contestant.settings.clone() };
-                    if !self
-                        .render(&settings, &mut all[index][level], interrupt)
-                        .map_err(|error| format!("entry '{}': {error}", contestant.name))?
-                    {
+                    let refused = |error: Failure| format!("entry '{}': {error}", contestant.name);
+                    let (image, rendering) = render(&settings).map_err(|error| refused(error.into()))?;
+                    if interrupt.is_requested() {
                         progress.finish();
                         return Ok(all);
                     }
+                    all[index][level].push(image, &rendering, self.reference).map_err(refused)?;
                     progress.add(1);
                 }
             }
@@ -94,21 +108,17 @@ impl Plan<'_> {
         progress.finish();
         Ok(all)
     }
+}
 
-    /// Adds one rendering; false if it was interrupted, and is not added.
-    fn render(&self, settings: &RenderSettings, into: &mut Measured, interrupt: &Interrupt) -> Result<bool, Failure> {
-        let (image, rendering) = render_to_image(self.scene, settings, |_| {
-            if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })?;
-        if interrupt.is_requested() {
-            return Ok(false);
-        }
-        into.errors.push(into.trials.push_image(&image, &rendering, self.reference)?);
-        into.seconds.push(rendering.seconds);
-        into.rays.push(rendering.rays.total() as f64);
-        into.samples.push(rendering.samples as f64);
-        into.first.get_or_insert(image);
-        Ok(true)
+impl Measured {
+    /// Adds one rendering.
+    fn push(&mut self, image: LayeredImage, rendering: &Rendering, reference: &LayeredImage) -> Result<(), Failure> {
+        self.errors.push(self.trials.push_image(&image, rendering, reference)?);
+        self.seconds.push(rendering.seconds);
+        self.rays.push(rendering.rays.total() as f64);
+        self.samples.push(rendering.samples as f64);
+        self.first.get_or_insert(image);
+        Ok(())
     }
 }
 
@@ -116,6 +126,7 @@ impl Plan<'_> {
 mod tests {
     use scene_core::builtin::Builtin;
 
+    use super::super::stand_in::grey;
     use super::*;
 
     #[test]
@@ -132,31 +143,40 @@ mod tests {
         let mut description = Builtin::named("furnace").unwrap().description();
         (description.camera.width, description.camera.height) = (4, 3);
         let scene = ReferenceScene::new(description).unwrap();
-        let settings = RenderSettings { threads: 1, ..RenderSettings::new(Budget::Samples(1)) };
         let mut reference = LayeredImage::new(4, 3).unwrap();
         reference.set_rgb(&[[0.5; 3]; 12]).unwrap();
-        let budgets = budgets(Budget::Samples(4));
-        let plan = Plan { scene: &scene, reference: &reference, budgets, trials: 3, seed: 1 };
+        let plan =
+            Plan { scene: &scene, reference: &reference, budgets: budgets(Budget::Samples(4)), trials: 3, seed: 1 };
+        let settings = RenderSettings::new(Budget::Samples(1));
         let contestants = ["a", "b"].map(|name| Contestant { name: name.into(), settings: settings.clone() });
-        let all = plan.run(&contestants, &Interrupt::inactive()).unwrap();
+        let mut asked = Vec::new();
+        let counting = |settings: &RenderSettings| {
+            asked.push((settings.seed, settings.budget));
+            grey(settings, &mut |_| ControlFlow::Continue(()))
+        };
+        let all = plan.run_by(&contestants, &Interrupt::inactive(), counting).unwrap();
         for measured in all.iter().flatten() {
             assert_eq!((measured.errors.len(), measured.trials.count()), (3, 3));
             assert!(measured.first.is_some());
         }
-        assert_eq!(all[0][1].samples, [4.0; 3]);
-        let mut seeds: Vec<u64> = ["a", "b"]
-            .iter()
-            .flat_map(|name| (0..3).flat_map(move |level| (0..3).map(move |trial| (name, level, trial))))
-            .map(|(name, level, trial)| plan.seed_of(name, level, trial))
-            .collect();
+        assert_eq!((&all[0][1].samples[..], &all[1][0].rays[..]), (&[4.0; 3][..], &[12.0; 3][..]));
+
+        // Two take turns with each of two budgets, three times, and each begins in turn.
+        assert_eq!(asked.len(), 12);
+        let order: Vec<Budget> = asked.iter().map(|&(_, budget)| budget).collect();
+        assert_eq!(order, [1, 1, 4, 4, 1, 1, 4, 4, 1, 1, 4, 4].map(Budget::Samples));
+        let begins = [0, 4, 8].map(|first| asked[first].0 == plan.seed_of("a", 0, first as u64 / 4));
+        assert_eq!(begins, [true, false, true]);
+        let mut seeds: Vec<u64> = asked.into_iter().map(|(seed, _)| seed).collect();
         seeds.sort_unstable();
         seeds.dedup();
-        assert_eq!(seeds.len(), 18);
+        assert_eq!(seeds.len(), 12);
 
         let interrupt = Interrupt::inactive();
         interrupt.request();
-        assert!(
-            plan.run(&contestants, &interrupt).unwrap().iter().flatten().all(|measured| measured.errors.is_empty())
-        );
+        let stopped = plan
+            .run_by(&contestants, &interrupt, |settings| grey(settings, &mut |_| ControlFlow::Continue(())))
+            .unwrap();
+        assert!(stopped.iter().flatten().all(|measured| measured.errors.is_empty()));
     }
 }

@@ -5,16 +5,19 @@ mod measure;
 mod page;
 mod pictures;
 mod reference;
+#[cfg(test)]
+mod stand_in;
 
 use std::path::{Path, PathBuf};
 
 use scene_core::{ReferenceScene, Scene, SceneDescription, Sensor};
 
 use super::render::EstimatorName;
-use super::{CompareArguments, Failure, RenderArguments, RenderSettings, print, report};
+use super::{CompareArguments, Failure, RenderArguments, RenderSettings, print, render_to_image, report};
 use crate::experiments::{Report, Row};
 use crate::output::{Interrupt, check_writable, save_image, write_atomically, write_json};
-use crate::render::Budget;
+use crate::render::{Budget, Observe};
+
 use entry::Entry;
 use measure::{Contestant, Measured, Plan};
 use reference::{Key, Reference};
@@ -122,7 +125,9 @@ fn find_reference(
         filter: base.filter,
         ..RenderSettings::new(budget)
     };
-    reference::cached(&arguments.cache, Key::new(description, &settings), scene, &settings, interrupt)
+    let key = Key::new(description, &settings);
+    let render = |settings: &RenderSettings, observe: Observe<'_>| render_to_image(scene, settings, observe);
+    reference::cached(&arguments.cache, key, scene, &settings, interrupt, render)
 }
 
 /// All that is known in the end.

@@ -9,8 +9,8 @@ use scene_core::film::{Attribute, LayeredImage, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, SceneDescription, Sensor};
 
 use crate::output::{Interrupt, Progress, check_writable, save_image};
-use crate::program::{Failure, RenderSettings, render_to_image, report};
-use crate::render::Budget;
+use crate::program::{Failure, RenderSettings, report};
+use crate::render::{Budget, Observe, Progress as Pass, RenderError, Rendering};
 
 /// Attribute of files in the cache that tells what they are the reference of.
 const KEY: &str = "referenceKey";
@@ -100,13 +100,14 @@ fn check(image: &LayeredImage, [width, height]: [u32; 2]) -> Result<(), String> 
 }
 
 /// Takes the reference out of the cache, or renders it and puts it there. `settings` are those of path tracing, with the budget that the
-/// reference should have at least.
+/// reference should have at least; `render` renders: who tests the cache need not compile all estimators.
 pub(super) fn cached(
     cache: &Path,
     key: Key,
     scene: &ReferenceScene,
     settings: &RenderSettings,
     interrupt: &Interrupt,
+    render: impl FnOnce(&RenderSettings, Observe<'_>) -> Result<(LayeredImage, Rendering), RenderError>,
 ) -> Result<Reference, Failure> {
     let path = key.file(cache, scene.name());
     if path.exists() {
@@ -126,11 +127,11 @@ pub(super) fn cached(
     };
     // Independent of the seeds of what it is compared with, and the same for all of them.
     let settings = RenderSettings { seed: Replications::seed(key.0, 0), ..settings.clone() };
-    let (mut image, rendering) = render_to_image(scene, &settings, |pass| {
+    let mut observe = |pass: Pass<'_>| {
         progress.add(pass.samples - progress.done());
         if interrupt.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    })
-    .map_err(|error| format!("reference: {error}"))?;
+    };
+    let (mut image, rendering) = render(&settings, &mut observe).map_err(|error| format!("reference: {error}"))?;
     progress.finish();
     if interrupt.is_requested() {
         return Err("interrupted while the reference was rendered: nothing is kept".into());
@@ -169,6 +170,7 @@ mod tests {
     use scene_core::builtin::Builtin;
     use scene_core::film::Filter;
 
+    use super::super::stand_in::grey;
     use super::*;
 
     fn description(name: &str) -> SceneDescription {
@@ -220,7 +222,8 @@ mod tests {
         let description = description("furnace");
         let scene = ReferenceScene::new(description.clone()).unwrap();
         let key = Key::new(&description, &settings(1));
-        let get = |samples| cached(folder.path(), key, &scene, &settings(samples), &Interrupt::inactive()).unwrap();
+        let get =
+            |samples| cached(folder.path(), key, &scene, &settings(samples), &Interrupt::inactive(), grey).unwrap();
         let first = get(4);
         assert!(!first.reused && first.about.contains("4 samples per pixel"));
         assert!(get(4).reused && get(2).reused);
@@ -238,7 +241,7 @@ mod tests {
 
         let interrupt = Interrupt::inactive();
         interrupt.request();
-        let error = cached(folder.path(), key, &scene, &settings(64), &interrupt).unwrap_err();
+        let error = cached(folder.path(), key, &scene, &settings(64), &interrupt, grey).unwrap_err();
         assert!(error.to_string().contains("interrupted") && get(4).reused, "{error}");
     }
 
