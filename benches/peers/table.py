@@ -28,7 +28,7 @@ LIMITS = {
     "path space filter, two threads": "distance tests and weights of about 51 neighbours each",
     "Owen-scrambled Sobol points, 4D": "integer operations",
     "independent numbers": "integer operations",
-    "paths": "latency of traversal: nodes and packs that wait for the ones before",
+    "paths": "wrong guesses in traversal, and the instructions of shading",
 }
 
 

@@ -137,6 +137,7 @@ fn stats_tell_the_settings_in_a_pipe_too() {
     assert_eq!((&stats["heuristic"], &stats["sampler"]), (&"balance".into(), &"lattice".into()));
     assert_eq!((&stats["seed"], &stats["max_depth"]), (&u64::MAX.into(), &3.into()));
     assert_eq!((&stats["lights"], &stats["path_filter"]), (&"uniform".into(), &serde_json::Value::Null));
+    assert_eq!(stats["details"], serde_json::json!({ "rrDepth": "5" }));
     let filtered = answer(folder.path(), &tiny(&["--filter", "psf", "--out", "b.exr", "--stats", "-"]));
     let filtered: serde_json::Value = serde_json::from_str(&filtered).unwrap();
     assert!(filtered["path_filter"].as_str().unwrap().starts_with("Psf "), "{filtered}");
@@ -259,6 +260,9 @@ fn frames_and_eyes_are_rendered_together() {
         let rgb = read(name).rgb().unwrap();
         rgb.iter().flatten().sum::<f32>() / rgb.len() as f32
     };
+    let told = |name: &str, key: &str| read(name).attribute(key).map(ToString::to_string);
+    assert_eq!(told("pairs/cornell-box-001-left.exr", "frame").unwrap(), "cornell-box-001-left");
+    assert_eq!(told("pairs/cornell-box-001-left.exr", "maxDepth").unwrap(), "2");
     // The lamp and the boxes are elsewhere for the other eye.
     assert_ne!(read("pairs/cornell-box-000-left.exr").rgb(), read("pairs/cornell-box-000-right.exr").rgb());
 
@@ -784,7 +788,9 @@ fn images_are_merged_once_and_with_their_like() {
         &["g.exr: its lightPaths is", "light_paths: 4"],
     );
     render("cornell-box", &["--filter", "tent", "--seed", "9", "--out", "h.exr"]);
-    fails(folder.path(), &["merge", "h.exr", "a.exr", "--out", "e.exr"], &["a.exr: its reconstruction is 'as usual'"]);
+    fails(folder.path(), &["merge", "h.exr", "a.exr", "--out", "e.exr"], &["a.exr: its reconstruction is 'none'"]);
+    render("cornell-box", &["--filter", "psf", "--seed", "9", "--out", "i.exr"]);
+    fails(folder.path(), &["merge", "i.exr", "a.exr", "--out", "e.exr"], &["a.exr: its pathFilter is 'none'"]);
     // Images of other programs, or what was made of ours by them.
     let change = |name: &str, change: &dyn Fn(&LayeredImage) -> LayeredImage| {
         save_image(&folder.path().join(name), &change(&image(folder.path(), "b.exr")), 0.0).unwrap();
@@ -857,4 +863,39 @@ fn experiments_are_found_by_their_names() {
         assert_ne!(experiment.name, "all", "this means all of them");
     }
     assert!(Experiment::named("nothing").is_none());
+}
+
+/// A filtered image goes on where it ended: batches of the same sequence, and the samples of both.
+#[test]
+fn filtered_images_are_continued() {
+    let folder = tempfile::tempdir().unwrap();
+    let filtered = |more: &[&'static str]| {
+        let all = ["render", "cornell-box", "--size", "8x6", "--filter", "psf", "--filter-batch", "2"];
+        [&all[..], more].concat()
+    };
+    succeeds(folder.path(), &filtered(&["--spp", "2", "--out", "a.exr"]));
+    succeeds(folder.path(), &filtered(&["--spp", "2", "--continue", "a.exr", "--out", "b.exr"]));
+    succeeds(folder.path(), &filtered(&["--spp", "4", "--out", "whole.exr"]));
+    let [once, twice, whole] = ["a.exr", "b.exr", "whole.exr"].map(|name| image(folder.path(), name));
+    let samples = |image: &LayeredImage| image.attribute("spp").and_then(|spp| spp.as_u64());
+    assert_eq!([&once, &twice, &whole].map(samples), [Some(2), Some(4), Some(4)]);
+    let [once, twice, whole] = [once, twice, whole].map(|image| image.rgb().unwrap());
+    let difference = |a: &[[f32; 3]], b: &[[f32; 3]]| -> f32 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).sum()
+    };
+    // To the rounding of the files.
+    assert!(difference(&twice, &whole) < 1e-4 * difference(&once, &whole), "{twice:?} {whole:?}");
+
+    let refuses = |more: &[&'static str], told: &[&str]| {
+        fails(
+            folder.path(),
+            &filtered(&[&["--spp", "2", "--continue", "a.exr", "--out", "c.exr"], more].concat()),
+            told,
+        );
+    };
+    refuses(&["--seed", "1"], &["a.exr cannot be continued", "its seed is '0', not '1'"]);
+    refuses(&["--max-depth", "3"], &["its maxDepth is '-1', not '3'"]);
+    refuses(&["--direct", "ris"], &["its resampling is 'none'"]);
+    succeeds(folder.path(), &filtered(&["--filter", "tent", "--spp", "2", "--out", "a.exr"]));
+    refuses(&[], &["its reconstruction is", "not 'none'"]);
 }

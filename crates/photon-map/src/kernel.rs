@@ -92,7 +92,7 @@ impl From<Kernel> for Named {
     fn from(kernel: Kernel) -> Self {
         match kernel {
             Kernel::Constant => Self::Constant,
-            // The inverse of an inverse has that inverse again, bit for bit.
+            // The inverse of an inverse has that inverse again, bit for bit, unless it is subnormal.
             Kernel::Cone(Cone { inverse_flatness }) => Self::Cone(1.0 / inverse_flatness),
             Kernel::Epanechnikov => Self::Epanechnikov,
         }

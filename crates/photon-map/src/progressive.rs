@@ -40,10 +40,10 @@ fn exponent(alpha: f64) -> Result<f64, ProgressiveError> {
     if alpha > 0.0 && alpha < 1.0 { Ok(alpha) } else { Err(ProgressiveError::Alpha(alpha)) }
 }
 
-/// A squared radius that has shrunk already: its root may be too small for an `f32`.
+/// A squared radius that has shrunk already: its root may be too small for an `f32`, but not too large.
 #[cfg(feature = "serde")]
 fn shrunk(radius_squared: f64) -> Result<f64, ProgressiveError> {
-    let valid = radius_squared > 0.0 && radius_squared.is_finite();
+    let valid = radius_squared > 0.0 && radius_squared <= f64::from(f32::MAX).powi(2);
     if valid { Ok(radius_squared) } else { Err(ProgressiveError::RadiusSquared(radius_squared)) }
 }
 

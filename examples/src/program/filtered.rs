@@ -7,7 +7,7 @@ use scene_core::film::{Attribute, LayeredImage, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
 use super::Failure;
-use super::attributes::attributes;
+use super::attributes::{PATH_FILTER, attributes, difference};
 use super::finish::{Finish, Run};
 use super::render::{EstimatorName, RenderSettings};
 use crate::estimators::{LightEstimator, NoLightPaths};
@@ -96,11 +96,13 @@ pub(super) fn earlier(
     if settings.path_filter.is_none() {
         return Err(refuse("--continue goes with --filter psf or psf-hash".to_owned()));
     }
-    for (key, now) in attributes(scene, settings) {
-        let then = image.attribute(&key).map(ToString::to_string).unwrap_or_default();
-        if then != now {
-            return Err(refuse(format!("its {key} is '{then}', not '{now}'")));
-        }
+    let (now, then) = (attributes(scene, settings), |key: &str| image.attribute(key).map(ToString::to_string));
+    if let Some((key, [then, now])) = difference(then, |key| now.get(key).cloned(), &["renderer"]) {
+        return Err(refuse(format!("its {key} is '{then}', not '{now}'")));
+    }
+    // Without these nobody knows which samples it has.
+    if let Some(key) = ["sampler", "seed", PATH_FILTER].iter().find(|key| image.attribute(key).is_none()) {
+        return Err(refuse(format!("it does not tell its {key}")));
     }
     let done = image.attribute(SAMPLES_PER_PIXEL).and_then(Attribute::as_u64);
     Ok((done.ok_or_else(|| refuse("it does not tell its samples per pixel".to_owned()))?, image))

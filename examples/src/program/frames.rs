@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use scene_core::film::{Film, LayeredImage, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
-use super::attributes::attributes;
+use super::attributes::{FRAME, attributes};
 use super::filtered;
 use super::render::{EstimatorName, RenderSettings};
 use super::{Failure, FramesArguments, load_description, report};
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &FramesArguments) -> Result<(), Failure> {
         }
     }
     for (file, film) in &images {
-        let image = annotated(arguments, &settings, &frames[0].scene, film)?;
+        let image = annotated(arguments, &settings, &frames[0].scene, film, file)?;
         for extension in ["exr", "png"] {
             save_image(&with_extension(file, extension), &image, arguments.exposure)?;
         }
@@ -183,6 +183,7 @@ fn annotated(
     settings: &RenderSettings,
     first: &ReferenceScene,
     film: &Film,
+    file: &Path,
 ) -> Result<LayeredImage, Failure> {
     let mut image = film.develop(0);
     let pixels = u64::from(film.width()) * u64::from(film.height());
@@ -190,6 +191,8 @@ fn annotated(
     for (key, text) in attributes(first, settings) {
         image.set_attribute(&key, text)?;
     }
+    // Frame and eye are in the name of the file.
+    image.set_attribute(FRAME, file.file_name().unwrap_or_default().to_string_lossy().into_owned())?;
     image.set_attribute("scene", arguments.scenes.join(", "))?;
     Ok(image)
 }

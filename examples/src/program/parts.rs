@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use scene_core::film::{Film, LayeredImage, LayeredImageError, SAMPLES_PER_PIXEL};
 use scene_core::{ReferenceScene, Scene, Sensor};
 
-use super::attributes::{DETAILS, NAMED, attributes};
+use super::attributes::{attributes, difference};
 use super::filtered::filter_and_batch;
 use super::render::{EstimatorName, RenderSettings};
 use super::{Failure, MergeArguments, RenderArguments, report, tell};
@@ -411,14 +411,13 @@ fn check_alike(all: &[(&PathBuf, &LayeredImage)]) -> Result<(), Failure> {
         if let Some((name, _)) = image.channels().find(|(name, _)| first.channel(name).is_none()) {
             return refuse(format!("has a channel '{name}', and {} has none", first_path.display()));
         }
-        // Settings of older files, or of other programs, may be missing; of images that tell details, each has those that apply.
-        let tell_details = [first, image].iter().all(|image| DETAILS.iter().any(|key| text(image, key).is_some()));
-        for key in NAMED.iter().chain(&DETAILS).filter(|key| !DIFFERENT.contains(key)) {
-            let (one, other) = (text(first, key), text(image, key));
-            let are_told = (one.is_some() && other.is_some()) || (tell_details && DETAILS.contains(key));
-            if are_told && one != other {
-                let [one, other] = [one, other].map(|text| text.unwrap_or_else(|| "as usual".to_owned()));
-                let message = format!("its {key} is '{other}', that of {} '{one}'", first_path.display());
+    }
+    // Of three, the first may be silent about what the others differ in.
+    for (index, (path, image)) in all.iter().enumerate() {
+        for (earlier_path, earlier) in &all[..index] {
+            if let Some((key, [one, other])) = difference(|key| text(earlier, key), |key| text(image, key), &DIFFERENT)
+            {
+                let message = format!("its {key} is '{other}', that of {} '{one}'", earlier_path.display());
                 return Err(named(path, &message));
             }
         }

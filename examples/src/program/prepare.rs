@@ -82,6 +82,7 @@ impl RenderArguments {
             resampling: self.resampling.clone(),
             light_photons: self.light_photons.clone(),
             photons: self.photons.clone(),
+            definitions: self.definitions.clone(),
             ranks: Ranks::default(),
             ao_distance: self.ao_distance.map_or(0.1 * scene.bounding_sphere().1, |d| d as f32),
         };

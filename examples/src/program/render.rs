@@ -155,13 +155,15 @@ pub struct RenderSettings {
     pub light_photons: LightPhotonSettings,
     /// Photon maps.
     pub photons: PhotonSettings,
+    /// What parameters of the scene file are, for the record.
+    pub definitions: Vec<(String, String)>,
     /// The processes that render together.
     pub ranks: Ranks,
 }
 
 impl RenderSettings {
     /// Whether paths are traced in the usual way, without any resampling.
-    pub(super) fn is_plain(&self) -> bool {
+    fn is_plain(&self) -> bool {
         !self.selects_by_photons() && self.direct_settings().is_plain()
     }
 
@@ -240,6 +242,7 @@ impl RenderSettings {
             resampling: ResamplingSettings::default(),
             light_photons: LightPhotonSettings::default(),
             photons: PhotonSettings::default(),
+            definitions: Vec::new(),
             ranks: Ranks::default(),
         }
     }

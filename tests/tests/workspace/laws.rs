@@ -103,11 +103,10 @@ fn photon_map(scene: &ReferenceScene, seed: u64, all: bool) -> PhotonCaustics {
 fn photons_are_the_caustic() {
     let scene = caustic();
     let run = |check: Check, x: f32, all: bool| -> Report {
-        let seed = check.seed();
         let x = scene.intersect(&Ray::new(Vec3A::new(x, 0.1, 0.05), -Vec3A::Y)).unwrap();
         let truth = |numbers: &mut _| caustic_by_brute_force(&scene, &x, DEPTH, numbers);
         let laws = CausticLaws::new().maps(32).samples(200_000).bias(0.03);
-        laws.run(check, &x, |n| photon_map(&scene, seed.wrapping_add(n), all), truth)
+        laws.run(check, &x, |seed| photon_map(&scene, seed, all), truth)
     };
     println!("{}", run(SUITE.check("caustic photons"), 0.05, false).expect_pass());
     // Beside the ball, where the lamp is seen.

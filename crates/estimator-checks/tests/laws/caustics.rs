@@ -100,7 +100,7 @@ impl<X: Vertex<Spectrum = Rgb>> CausticMap<X> for Rays<'_> {
 }
 
 fn map<'s>(scene: &'s ReferenceScene, lie: Lie) -> impl Fn(u64) -> Rays<'s> {
-    move |n| Rays { scene, numbers: RefCell::new(Uniforms::new(n)), lie }
+    move |seed| Rays { scene, numbers: RefCell::new(Uniforms::new(seed)), lie }
 }
 
 #[test]

@@ -178,7 +178,7 @@ impl Hierarchy {
         let mut open = vec![(0, 0..order.len())];
         while let Some((wide, range)) = open.pop() {
             let mut children = Vec::with_capacity(WIDTH);
-            for part in eighths(&mut order, range, boxes) {
+            for part in quarters(&mut order, range, boxes) {
                 let Some(around) = bounds_of(&order[part.clone()]) else { continue };
                 let child = if part.len() <= LANES {
                     hierarchy.add_pack(&order[part])
@@ -195,8 +195,8 @@ impl Hierarchy {
     }
 }
 
-/// Sorts a range into eight parts of about equal size by the centres along their longest axis.
-fn eighths(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range<usize>> {
+/// Sorts a range into four parts of about equal size by the centres along their longest axis.
+fn quarters(order: &mut [u32], range: Range<usize>, boxes: &[Aabb]) -> Vec<Range<usize>> {
     let center = |i: u32| boxes[i as usize].min + boxes[i as usize].max;
     let part = &mut order[range.clone()];
     let (low, high) = part
