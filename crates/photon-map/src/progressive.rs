@@ -15,7 +15,7 @@ pub enum ProgressiveError {
     #[error("alpha lies strictly between 0 and 1, not at {0}")]
     Alpha(f64),
     /// The squared radius of a file is not positive and finite.
-    #[error("a squared radius is positive and finite, not {0}")]
+    #[error("a squared radius is positive, and its root finite in single precision, not {0}")]
     RadiusSquared(f64),
     /// The iteration of a file is not one of those that are counted exactly.
     #[error("iterations are counted from 1 to 2^53, not {0}")]

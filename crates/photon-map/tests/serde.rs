@@ -127,7 +127,12 @@ fn impossible_results_and_records_are_refused() {
         format!(r#"{{"radius_squared":{squared},"iteration":{iteration},"alpha":{alpha}}}"#)
     };
     assert!(read!(ProgressiveRadius, &radius("1", "9007199254740992", "0.5")).is_ok());
-    is_refused!(ProgressiveRadius, &radius("0", "1", "0.5"), "a squared radius is positive and finite, not 0");
+    is_refused!(
+        ProgressiveRadius,
+        &radius("0", "1", "0.5"),
+        "a squared radius is positive, and its root finite in single precision, not 0"
+    );
+    is_refused!(ProgressiveRadius, &radius("1e300", "1", "0.5"), "finite in single precision, not 1000");
     is_refused!(ProgressiveRadius, &radius("1", "0", "0.5"), "from 1 to 2^53, not 0");
     is_refused!(ProgressiveRadius, &radius("1", "18446744073709551615", "0.5"), "from 1 to 2^53, not 184");
     is_refused!(ProgressiveRadius, &radius("1", "1", "1"), "not at 1");
@@ -138,7 +143,7 @@ fn impossible_results_and_records_are_refused() {
     is_refused!(
         ProgressivePoint<f32>,
         &point("-4", "1", "0.5", "1"),
-        "a squared radius is positive and finite, not -4"
+        "a squared radius is positive, and its root finite in single precision, not -4"
     );
     is_refused!(ProgressivePoint<f32>, &point("1", "-1", "0.5", "1"), "finite and not negative, not -1");
     is_refused!(ProgressivePoint<f32>, &point("1", "1", "0", "1"), "not at 0");
