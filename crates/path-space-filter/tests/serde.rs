@@ -190,10 +190,11 @@ fn batches_go_on_from_a_file() {
 }
 
 proptest! {
-    /// Kept is the square, written is its root.
+    /// Kept is the square, written is its root. As numbers: text is for serde_json to read.
     #[test]
     fn every_threshold_is_read_as_written(threshold in prop_oneof![0.0..2.0_f32, 0.0..1e-20_f32, 1e-40..1e20_f32]) {
         let weight = AlbedoDifference::new(threshold).unwrap();
-        prop_assert_eq!(read!(AlbedoDifference, &serde_json::to_string(&weight).unwrap()), Ok(weight));
+        let numbers = serde_json::to_value(weight).unwrap();
+        prop_assert_eq!(serde_json::from_value::<AlbedoDifference>(numbers).unwrap(), weight);
     }
 }

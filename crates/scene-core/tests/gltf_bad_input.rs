@@ -107,9 +107,7 @@ fn nodes_form_trees() {
 
     let node = |fields: &str| Data::default().error(&format!(r#""nodes":[{{{fields}}}]"#));
     assert!(node(r#""rotation":[0,0,0,0]"#).contains("make no transform"));
-    // With `float_roundtrip` of serde_json, which any crate of a build may turn on, the parser refuses it already.
-    let large = node(r#""translation":[0,1e39,0]"#);
-    assert!(large.starts_with("nodes[0]") || large.contains("number out of range"), "{large}");
+    assert!(node(r#""translation":[0,1e39,0]"#).starts_with("nodes[0]"));
     assert!(node(r#""matrix":[1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1]"#).contains("not affine"));
     let far = r#"{"children":[1],"scale":[1e30,1,1]},{"scale":[1e30,1,1]}"#;
     let far = Data::default().error(&format!(r#"{scene}"nodes":[{far}]"#));
